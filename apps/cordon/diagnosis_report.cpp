@@ -281,10 +281,12 @@ std::string box_text(const Box& box, Digits digits) {
 std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline,
                            const Paint& paint) {
   const DiagnosisOutcome& found = *pipeline.diagnosis();
-  std::string text = fmt::format("{}  {}, {}, {} mode{}, {:.1f} µs/step, at most {:.1f}\n\n",
-                                 paint.bold(pipeline.name), pipeline.backend, found.diagnoser,
-                                 found.modes.size(), found.modes.size() == 1 ? "" : "s",
-                                 pipeline.median_step_us, pipeline.largest_step_us);
+  std::string text = fmt::format(
+      "{}  {}, {}, {} mode{}, {:.1f} µs/step, 99 % {:.1f}, "
+      "at most {:.1f}\n\n",
+      paint.bold(pipeline.name), pipeline.backend, found.diagnoser, found.modes.size(),
+      found.modes.size() == 1 ? "" : "s", pipeline.step_us.median, pipeline.step_us.percentile_99,
+      pipeline.step_us.largest);
   std::int64_t left = 0;
   const Rows rows = timeline(study, found, left);
   if (rows.size() > 1) text += table(rows, paint);
@@ -349,6 +351,11 @@ std::string guarantees_text(const Guarantees& guarantees, const Labels& labels, 
                      fault_guarantees_text(guarantees, labels, paint);
   if (guarantees.pairs.empty() && !guarantees.faults.empty()) return text;
   text += table(rows, paint);
+  text +=
+      "R̊ij encloses all residuals of observer j once mode i has been true for long. 0 inside: the "
+      "observer of the true mode\n"
+      "agrees with the data; 0 outside: the data contradict that of another mode. yes and no are "
+      "proven.\n";
   if (guarantees.error_set) text += error_set_text(*guarantees.error_set, modes);
   switch (guarantees.all) {
     case Answer::yes:

@@ -35,6 +35,7 @@ void add_report(CLI::App& app, Program& program) {
       ->check(CLI::Validator(path_problem, "", ""))
       ->option_text(" ");
   command->add_flag("--svg", arguments->options.svg, "Write every figure as figures/NAME.svg too");
+  command->add_flag("--pdf", arguments->options.pdf, "Write every figure as figures/NAME.pdf too");
   command->add_flag("--csv", arguments->options.csv,
                     "Write the numbers of every figure as figures/NAME.csv too");
   command->add_flag("--quiet", arguments->quiet, "Do not print the names of the files");

@@ -118,12 +118,14 @@ std::vector<Column> columns(const RunOutcome& outcome, const Labels& labels) {
       {"BACKEND", [](const PipelineOutcome& p) { return p.backend; }},
       {"CONSISTENCY", [&labels](const PipelineOutcome& p) { return consistency(labels, p); }}};
   for (Column& column : metric_columns(outcome)) found.push_back(std::move(column));
-  found.push_back({"µs/STEP", [](const PipelineOutcome& p) {
-                     return p.steps ? fmt::format("{:.1f}", p.median_step_us) : "-";
-                   }});
-  found.push_back({"LARGEST", [](const PipelineOutcome& p) {
-                     return p.steps ? fmt::format("{:.1f}", p.largest_step_us) : "-";
-                   }});
+  const auto add_time = [&](const char* title, double StepTimes::*time) {
+    found.push_back({title, [time](const PipelineOutcome& p) {
+                       return p.steps ? fmt::format("{:.1f}", p.step_us.*time) : "-";
+                     }});
+  };
+  add_time("µs/STEP", &StepTimes::median);
+  add_time("99 % µs", &StepTimes::percentile_99);
+  add_time("LARGEST", &StepTimes::largest);
   return found;
 }
 
@@ -171,9 +173,7 @@ ordered_json json_of(const PipelineOutcome& p, const DiagnosisOutcome& found) {
           {"error", error_of(p)},
           {"guarantees", guarantees ? ordered_json::parse(cordon::json_of(*guarantees, found.modes))
                                     : ordered_json(nullptr)},
-          {"diagnosis", ordered_json::parse(cordon::json_of(found))},
-          {"median_step_us", p.median_step_us},
-          {"largest_step_us", p.largest_step_us}};
+          {"diagnosis", ordered_json::parse(cordon::json_of(found))}};
 }
 
 ordered_json json_of(const PipelineOutcome& p, const DesignedOutcome& found,
@@ -208,9 +208,7 @@ ordered_json json_of(const PipelineOutcome& p, const DesignedOutcome& found,
                                   : ordered_json(nullptr)},
           {"exact", found.exact ? ordered_json::parse(cordon::json_of(*found.exact, modes))
                                 : ordered_json(nullptr)},
-          {"experiments", std::move(experiments)},
-          {"median_step_us", p.median_step_us},
-          {"largest_step_us", p.largest_step_us}};
+          {"experiments", std::move(experiments)}};
 }
 
 ordered_json json_of(const PipelineOutcome& p, const EstimationOutcome& found,
@@ -244,15 +242,17 @@ ordered_json json_of(const PipelineOutcome& p, const EstimationOutcome& found,
           {"last", last_json(found)},
           {"error", error_of(p)},
           {"metrics", std::move(metrics)},
-          {"median_step_us", p.median_step_us},
-          {"largest_step_us", p.largest_step_us},
           {"median_hull_us", found.median_hull_us}};
 }
 
 ordered_json json_of(const PipelineOutcome& p, const std::vector<std::string>& modes) {
-  if (p.design()) return json_of(p, *p.design(), modes);
-  if (p.diagnosis()) return json_of(p, *p.diagnosis());
-  return json_of(p, *p.estimation(), modes);
+  ordered_json json = p.design()      ? json_of(p, *p.design(), modes)
+                      : p.diagnosis() ? json_of(p, *p.diagnosis())
+                                      : json_of(p, *p.estimation(), modes);
+  json["median_step_us"] = p.step_us.median;
+  json["percentile_99_step_us"] = p.step_us.percentile_99;
+  json["largest_step_us"] = p.step_us.largest;
+  return json;
 }
 
 /// A guarantee that was violated at `violated_at`.

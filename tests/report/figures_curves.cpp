@@ -56,6 +56,24 @@ TEST_CASE("data: outputs and inputs, gaps as they are") {
   }
 }
 
+TEST_CASE("data: samples left out as outliers are points on their output, by pipeline") {
+  const ResultsFiles files;
+  files.write("data.csv", "k,y_1,y_2\n0,0,5\n1,9,6\n2,0,7\n");
+  files.replace("results.json", R"("steps": [{"k": 0}]})",
+                R"("summary": {"outliers": {"left_out": [{"k": 1, "outputs": [1, 7]},
+                   {"k": 2, "outputs": [2]}, {"k": 99, "outputs": [1]}]}}, "steps": []})");
+  const Report report = read_report(files.path());
+  const Plot &first = plot(report, "output_1"), &second = plot(report, "output_2");
+  REQUIRE(first.series.size() == 2);
+  CHECK(first.series[1].kind == Series::Kind::points);
+  CHECK(first.series[1].name == "left out by a");
+  CHECK(first.series[1].pipeline == 0);
+  CHECK(first.series[1].x == std::vector<double>{1});
+  CHECK(first.series[1].y == std::vector<double>{9});
+  REQUIRE(second.series.size() == 2);
+  CHECK(second.series[1].y == std::vector<double>{7});
+}
+
 TEST_CASE("bounds: bands of pipelines, inner bands, truth, gaps and marks") {
   const ResultsFiles files;
   const Report report = read_report(files.path());
@@ -130,6 +148,75 @@ TEST_CASE("bounds less the truth, for every pipeline from its first step on") {
   CHECK(plot(gaps, "bounds_less_truth_1").series.size() == 1);  // "b" has no step there
   files.write("data.csv", "k,y_1\n0,0\n");
   CHECK_FALSE(has(read_report(files.path()), "bounds_less_truth_1"));
+}
+
+TEST_CASE("widths over time: gaps where it is empty, the edge where it is unbounded") {
+  const ResultsFiles files;
+  const Report report = read_report(files.path());
+  const Plot &first = plot(report, "width_1"), &second = plot(report, "width_2");
+  REQUIRE(first.series.size() == 2);
+  CHECK(first.series[0].kind == Series::Kind::line);
+  CHECK(first.series[0].y[0] == 2);
+  CHECK(first.series[0].y[1] == 4);
+  CHECK(std::isnan(first.series[0].y[2]));
+  CHECK(first.series[1].y == std::vector<double>{10});
+  CHECK(first.y_label == "width of x_1");
+  CHECK_FALSE(first.log_y);
+  CHECK(second.series[0].y[0] == infinity);
+  CHECK_FALSE(has(report, "steady_state_1"));
+}
+
+namespace {
+
+/// Bounds ±1 of a state at `level`, but for a transient of `steps` steps at ±`wide`.
+std::string with_transient(int steps, double wide, double level = 0) {
+  std::string rows = "pipeline,k,consistent,tightness,lower_1,upper_1\n";
+  for (int k = 0; k < 40; ++k) {
+    const double half = k < steps ? wide : 1;
+    rows += "a," + std::to_string(k) + ",yes,outer," + std::to_string(level - half) + "," +
+            std::to_string(level + half) + "\n";
+  }
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("what a transient hides of the steady state is drawn again") {
+  const ResultsFiles files;
+  files.write("data.csv", "");
+  files.write("steps.csv", with_transient(7, 100));
+  const Report report = read_report(files.path());
+  const Plot& late = plot(report, "steady_state_1");
+  REQUIRE(late.series.size() == 1);
+  CHECK(late.series[0].x.front() == 7);
+  CHECK(late.series[0].x.size() == 33);
+  CHECK(late.series[0].upper.front() == 1);
+  CHECK(plot(report, "width_1").log_y);
+  for (const Figure& figure : report.figures) {
+    if (figure.id == "steady_state_1")
+      CHECK(figure.caption.find("From k = 7 on") != std::string::npos);
+  }
+
+  files.write("steps.csv", with_transient(7, 3));  // can be read beside it
+  CHECK_FALSE(has(read_report(files.path()), "steady_state_1"));
+  files.write("steps.csv", with_transient(30, 100));  // no steady state to speak of
+  CHECK_FALSE(has(read_report(files.path()), "steady_state_1"));
+  files.write("steps.csv", with_transient(0, 1));
+  CHECK_FALSE(has(read_report(files.path()), "steady_state_1"));
+}
+
+TEST_CASE("where the state is known the errors are drawn after the transient") {
+  const ResultsFiles files;
+  files.write("steps.csv", with_transient(7, 100, 5));
+  std::string data = "k,y_1,x_1\n";
+  for (int k = 0; k < 40; ++k) data += std::to_string(k) + ",0,5\n";
+  files.write("data.csv", data);
+  const Report report = read_report(files.path());
+  CHECK(plot(report, "steady_state_1").series[0].upper.back() == 1);
+  for (const Figure& figure : report.figures) {
+    if (figure.id == "steady_state_1")
+      CHECK(figure.title == "Bounds of state 1 less its true value after the transient");
+  }
 }
 
 TEST_CASE("an estimate that stays empty is marked once, and again after it was not") {

@@ -219,6 +219,24 @@ TEST_CASE("lines of other times are passed over, lines of another run are refuse
                        InputError);
 }
 
+TEST_CASE("sets too large for a window are left out, and told") {
+  for (const char* half : {"1e308", "1.5e308", "1e200"}) {
+    const ResultsFiles files;
+    std::string text = strip;
+    text.replace(text.find("[2]"), 3, std::string("[") + half + "]");
+    CAPTURE(half);
+    files.write("sets.jsonl", line("a", 0, text) + line("a", 1, box(1, 1, 1)));
+    const Report report = read_report(files.path());
+    for (const SetFrame& frame : sets(report)->frames) {
+      for (const double edge : {frame.left, frame.right, frame.bottom, frame.top})
+        CHECK(std::abs(edge) < 10);
+    }
+    CHECK(std::any_of(report.notes.begin(), report.notes.end(), [](const std::string& note) {
+      return note.find("too large to be drawn") != std::string::npos;
+    }));
+  }
+}
+
 TEST_CASE("any bytes among the sets: a report or an InputError") {
   CHECK(rc::check([] {
     const ResultsFiles files;

@@ -29,8 +29,7 @@ PipelineOutcome diagnosis() {
   p.name = "Bank of zonotopes";
   p.backend = "zonotope";
   p.steps = 161;
-  p.median_step_us = 12.34;
-  p.largest_step_us = 98.76;
+  p.step_us = {12.34, 56.78, 98.76};
   DiagnosisOutcome d;
   d.diagnoser = "observer_bank";
   d.modes = {"healthy", "fault 1", "fault 2"};
@@ -73,7 +72,7 @@ TEST_CASE("the timeline: one line per event, with its evidence") {
   const std::string text = apps::diagnosis_text(study(), diagnosis(), apps::Paint(stdout));
   CHECK(
       text ==
-      "Bank of zonotopes  zonotope, observer_bank, 3 modes, 12.3 µs/step, at most 98.8\n"
+      "Bank of zonotopes  zonotope, observer_bank, 3 modes, 12.3 µs/step, 99 % 56.8, at most 98.8\n"
       "\n"
       "k    EVENT          MODE                    EVIDENCE\n"
       "0    starts         healthy                 assumed by the study\n"
@@ -207,6 +206,10 @@ TEST_CASE("statements in advance: the table, the error set, the answer") {
         "healthy   fault 1    R̊10 = [-0.8325, -0.2937]  0 outside  yes\n"
         "fault 1   healthy    R̊01 = [-0.0100, 0.8000]   0 outside  not guaranteed\n"
         "fault 1   fault 1    R̊11 = [1.0000, 2.0000]    0 inside   no\n"
+        "R̊ij encloses all residuals of observer j once mode i has been true for long. 0 inside: "
+        "the observer of the true mode\n"
+        "agrees with the data; 0 outside: the data contradict that of another mode. yes and no "
+        "are proven.\n"
         "The condition fails for some modes, whatever the accuracy: 0 lies in the limit of "
         "these sets, which may be larger than those of the residuals\n");
   g.all = Answer::yes;

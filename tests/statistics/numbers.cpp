@@ -70,7 +70,7 @@ TEST_CASE(
   estimation.reproducible = 7;
   estimation.median_us = {1, 2, 3, 4};
   estimation.median_hull_us = 5;
-  outcome.median_step_us = 6;
+  outcome.step_us = {6, 8, 9};
   outcome.wall_s = .5;
   const auto [repeat, measured] = found(outcome);
   CHECK(repeat.at("steps") == 10);
@@ -91,6 +91,8 @@ TEST_CASE(
   CHECK(repeat.at("contains_truth_no") == 1);
   CHECK(measured == std::map<std::string, double>{{"step_time_us_mean", 33.5},
                                                   {"step_us", 6},
+                                                  {"step_99_us", 8},
+                                                  {"step_largest_us", 9},
                                                   {"predict_us", 1},
                                                   {"correct_us", 2},
                                                   {"reduce_us", 3},
@@ -141,7 +143,7 @@ TEST_CASE("a diagnoser: rates, and delays over all modes") {
   PipelineOutcome outcome;
   outcome.steps = 20;
   outcome.violated_at = 4;
-  outcome.median_step_us = 7;
+  outcome.step_us.median = 7;
   DiagnosisOutcome& diagnosis = outcome.task.emplace<DiagnosisOutcome>();
   diagnosis.diagnoser = "d";
   diagnosis.runs = 8;
@@ -175,7 +177,8 @@ TEST_CASE("a diagnoser: rates, and delays over all modes") {
   CHECK(repeat.at("isolation_delay_max") == 11);
   CHECK(!repeat.contains("consistent"));
   CHECK(!repeat.contains("fault_bounds"));
-  CHECK(measured == std::map<std::string, double>{{"step_us", 7}, {"wall_s", 0}});
+  CHECK(measured == std::map<std::string, double>{
+                        {"step_us", 7}, {"step_99_us", 0}, {"step_largest_us", 0}, {"wall_s", 0}});
 
   diagnosis.truth_known = false;
   const auto blind = found(outcome).repeat;

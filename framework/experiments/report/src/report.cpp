@@ -2,10 +2,12 @@
 #include "cordon/experiments/report.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "cordon/core/error.hpp"
 #include "experiments/report/figure_csv.hpp"
 #include "experiments/report/page.hpp"
+#include "experiments/report/pdf.hpp"
 #include "experiments/report/read_report.hpp"
 #include "experiments/report/svg.hpp"
 #include "study/text/atomic_directory.hpp"
@@ -28,7 +30,7 @@ void remove_others(const std::filesystem::path& directory, const report::Report&
   Files others;
   for (const auto& entry : std::filesystem::directory_iterator(directory)) {
     const std::string name = entry.path().stem().string(), kind = entry.path().extension().string();
-    if (!entry.is_regular_file() || (kind != ".svg" && kind != ".csv") ||
+    if (!entry.is_regular_file() || (kind != ".svg" && kind != ".pdf" && kind != ".csv") ||
         !std::all_of(name.begin(), name.end(), plain))
       continue;
     const auto is_it = [&](const report::Figure& figure) { return figure.id == name; };
@@ -46,21 +48,27 @@ Files write_figures(const std::filesystem::path& directory, const ReportOptions&
   Files files;
   // Others' figures go from that folder: a link in its place could lead to files that are none of
   // this program's.
-  if ((options.svg || options.csv) && std::filesystem::is_symlink(directory / "figures")) {
+  if ((options.svg || options.pdf || options.csv) &&
+      std::filesystem::is_symlink(directory / "figures")) {
     throw InputError((directory / "figures").string(),
                      {{"", "is a symbolic link", "remove the link"}});
   }
-  if (options.html || options.svg) {
+  if (options.html || options.svg || options.pdf) {
     const report::Report page = report::read_report(directory);
     if (options.html) {
       detail::AtomicDirectory out(directory);
       out.create("report.html").write(report::page_of(page));
       commit(out, files);
     }
-    if (options.svg) {
+    if (options.svg || options.pdf) {
       detail::AtomicDirectory out(directory / "figures");
-      for (const report::Figure& figure : page.figures)
-        out.create(figure.id + ".svg").write(report::svg_of(figure, page));
+      std::optional<report::PdfConverter> converter;
+      if (options.pdf) converter.emplace();
+      for (const report::Figure& figure : page.figures) {
+        const std::string svg = report::svg_of(figure, page);
+        if (options.svg) out.create(figure.id + ".svg").write(svg);
+        if (options.pdf) out.create(figure.id + ".pdf").write(converter->pdf_of(svg));
+      }
       commit(out, files);
       remove_others(directory / "figures", page);
     }

@@ -49,6 +49,8 @@ class MetricNames {
                                "answers_unknown",
                                "numbers",
                                "step_us",
+                               "step_99_us",
+                               "step_largest_us",
                                "predict_us",
                                "correct_us",
                                "reduce_us",

@@ -166,8 +166,9 @@ void Results::end_pipeline(const PipelineOutcome& outcome, Summary row,
     run_.key("median_time_us");
     write_times(run_, found->median_us, found->median_hull_us);
   }
-  run_.member("median_step_us", outcome.median_step_us)
-      .member("largest_step_us", outcome.largest_step_us)
+  run_.member("median_step_us", outcome.step_us.median)
+      .member("percentile_99_step_us", outcome.step_us.percentile_99)
+      .member("largest_step_us", outcome.step_us.largest)
       .member("wall_s", outcome.wall_s);
   for (const MetricValue& metric : measured) write(run_, metric);
   write_numbers(run_, numbers, true);

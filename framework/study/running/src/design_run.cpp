@@ -6,7 +6,7 @@
 #include "study/checks/assumption_check.hpp"
 #include "study/checks/common_runs.hpp"
 #include "study/data/experiment.hpp"
-#include "study/results/median.hpp"
+#include "study/results/quantiles.hpp"
 #include "study/running/diagnosis_score.hpp"
 
 namespace cordon::detail {
@@ -94,8 +94,7 @@ class DesignRun final : public PipelineRun {
   }
 
   void conclude() override {
-    outcome_.median_step_us = median_.value();
-    outcome_.largest_step_us = median_.largest();
+    outcome_.step_us = step_times_of(step_us_);
     if (check_) tell(check_->failed(), outcome_);
     outcome_.task = std::move(found_);
     if (context_.results) context_.results->design(spec_, rounding(), outcome_);
@@ -120,7 +119,7 @@ class DesignRun final : public PipelineRun {
         if (last->reset) check_->restarted();
         shown.row(record->sample.k) = record->sample.y.transpose();
         score.step(mode_, *last);
-        median_.add(diagnoser_->step_us());
+        step_us_.add(diagnoser_->step_us());
         ++outcome_.steps;
         if (!isolates(*last, mode_)) {
           isolated_at = -1;
@@ -205,7 +204,7 @@ class DesignRun final : public PipelineRun {
   Index mode_ = 0;                                        ///< of the next experiment, with
   std::int64_t seed_offset_ = 0;                          ///< this seed
   Delays isolated_at_;
-  Median median_;
+  Quantiles step_us_;
   DesignedOutcome found_;
 };
 

@@ -3,7 +3,7 @@
 
 #include "pipeline_run.hpp"
 #include "study/checks/assumption_check.hpp"
-#include "study/results/median.hpp"
+#include "study/results/quantiles.hpp"
 #include "study/running/diagnosis_score.hpp"
 #include "study/running/fault_score.hpp"
 
@@ -98,7 +98,7 @@ class DiagnosisRun final : public PipelineRun {
       timeline_->step(record.mode, *diagnosis,
                       [&](DiagnosisEvent event) { keep(found_.events, std::move(event)); });
     }
-    median_.add(diagnoser_->step_us());
+    step_us_.add(diagnoser_->step_us());
     score_->step(record.mode, *diagnosis);
     if (Results* const results = writer())
       results->diagnosis({*diagnosis, record.mode, faults, diagnoser_->step_us()});
@@ -119,8 +119,7 @@ class DiagnosisRun final : public PipelineRun {
   }
 
   void conclude() override {
-    outcome_.median_step_us = median_.value();
-    outcome_.largest_step_us = median_.largest();
+    outcome_.step_us = step_times_of(step_us_);
     if (check_) tell(check_->failed(), outcome_);
     found_.statistics = tally_.statistics();
     found_.detection = tally_.detection();
@@ -185,7 +184,7 @@ class DiagnosisRun final : public PipelineRun {
   FaultScore fault_score_;
   bool exclusion_excused_ = false;  ///< that of `true_mode_excluded` is
   std::optional<Index> violated_in_run_;
-  Median median_;
+  Quantiles step_us_;
   DiagnosisOutcome found_;
 };
 

@@ -9,14 +9,14 @@
 #include "study/checks/inner_check.hpp"
 #include "study/checks/outside.hpp"
 #include "study/checks/rounding_margin.hpp"
-#include "study/results/median.hpp"
+#include "study/results/quantiles.hpp"
 
 namespace cordon::detail {
 
 namespace {
 
-struct Medians {
-  Median predict, correct, reduce, question, hull, step;
+struct Phases {
+  Quantiles predict, correct, reduce, question, hull, step;
 
   void add(const PhaseTimes& times, double hull_us) {
     predict.add(times.predict);
@@ -138,7 +138,7 @@ class EstimationRun final : public PipelineRun {
     });
     if (failed()) return;
     if (found_.inconsistent_from < 0 || (restarts() && !was_empty_))
-      medians_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
+      phases_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
     count(*estimate, hull);
     if (results)
       results->estimate({*estimate, hull, hull_proofs_, inner, *values, observer_->times(), hull_us,
@@ -153,11 +153,10 @@ class EstimationRun final : public PipelineRun {
     found_.summary = summary.reproducible;
     found_.reproducible = summary.reproducible.size();
     found_.summary.insert(found_.summary.end(), summary.measured.begin(), summary.measured.end());
-    found_.median_us = {medians_.predict.value(), medians_.correct.value(), medians_.reduce.value(),
-                        medians_.question.value()};
-    found_.median_hull_us = medians_.hull.value();
-    outcome_.median_step_us = medians_.step.value();
-    outcome_.largest_step_us = medians_.step.largest();
+    found_.median_us = {phases_.predict.median(), phases_.correct.median(), phases_.reduce.median(),
+                        phases_.question.median()};
+    found_.median_hull_us = phases_.hull.median();
+    outcome_.step_us = step_times_of(phases_.step);
     found_.growth = growth_.growth();
     if (check_) tell(check_->failed(), outcome_);
     found_.inner_steps = inner_.steps();
@@ -250,7 +249,7 @@ class EstimationRun final : public PipelineRun {
   std::optional<Sample> before_;  ///< the sample before these
   std::optional<RoundingMargin> rounding_;
   std::vector<Certificate> hull_proofs_;
-  Medians medians_;
+  Phases phases_;
   InnerCheck inner_;
   GrowthWatch growth_;
   EstimationOutcome found_;

@@ -12,6 +12,7 @@ struct ReportOptions {
   bool html = true;  ///< report.html: one file that needs nothing else
   bool svg = false;  ///< figures/NAME.svg
   bool csv = false;  ///< figures/NAME.csv: the numbers of each figure
+  bool pdf = false;  ///< figures/NAME.pdf: the same drawings
 };
 
 /// Reads the files that `cordon run` has left in `directory`, and no plugin, and writes the figures

@@ -12,11 +12,6 @@ namespace {
 using json::Cursor;
 using Kind = json::Value::Kind;
 
-std::optional<Cursor> object_of(const Cursor& at, const char* key) {
-  const auto found = at.find(key);
-  return found && found->is(Kind::object) ? found : std::nullopt;
-}
-
 /// "proven / unknown", or a dash.
 Table::Cell answers(const std::optional<Cursor>& all, const char* kind) {
   const auto counts = all ? object_of(*all, kind) : std::nullopt;
@@ -118,27 +113,6 @@ void add_gains(const RunFiles& files, Report& report) {
                             "bounds the amplification from disturbances "
                             "and noise to the error.",
                             std::move(table)});
-}
-
-void add_guarantees(const RunFiles& files, Report& report) {
-  Table table{{"Pipeline", "Method", "Every pair told apart", "Error set holds all errors: factor"},
-              {}};
-  for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
-    const auto guarantees = object_of(files.tree(p), "guarantees");
-    if (!guarantees) continue;
-    const auto set = object_of(*guarantees, "error_set");
-    table.rows.push_back({text_cell(files.pipelines()[p].name),
-                          text_cell(text_of(*guarantees, "method")),
-                          text_cell(text_of(*guarantees, "all")),
-                          number_cell(set ? value_of(*set, "factor") : std::nan(""))});
-  }
-  if (table.rows.empty()) return;
-  report.figures.push_back(
-      {"guarantees", section::answers, "What diagnosers promise in advance",
-       "Whatever the disturbances are: in the steady state every residual contains 0 in its own "
-       "mode and in no other. "
-       "A factor of at most 1: the set that errors are reset to holds them all.",
-       std::move(table)});
 }
 
 /// "gauge 1 [m] lies 0.3 beyond its prediction".

@@ -16,6 +16,11 @@ bool has_inner(const Curves& curves) {
   });
 }
 
+void add_events(const Curves& curves, Plot& plot) {
+  for (const PlantEvent& event : curves.events)
+    plot.marks.push_back({static_cast<double>(event.k), event.text});
+}
+
 Plot bounds_of(const RunFiles& files, const Curves& curves, std::size_t i) {
   Plot plot{"k", axis_of(files.labels().states, "x", i), false, {}};
   for (std::size_t p = 0; p < curves.pipelines.size(); ++p) {
@@ -35,8 +40,7 @@ Plot bounds_of(const RunFiles& files, const Curves& curves, std::size_t i) {
   }
   if (i < curves.truth.size() && curves.truth[i].has_values())
     plot.series.push_back(curves.truth[i].line("true state", of_data));
-  for (const PlantEvent& event : curves.events)
-    plot.marks.push_back({static_cast<double>(event.k), event.text});
+  add_events(curves, plot);
   return plot;
 }
 
@@ -49,9 +53,39 @@ Plot errors_of(const RunFiles& files, const Curves& curves, std::size_t i) {
     if (i < steps.error.size() && steps.error[i].has_values())
       plot.series.push_back(steps.error[i].band(files.pipelines()[p].name, static_cast<int>(p)));
   }
-  for (const PlantEvent& event : curves.events)
-    plot.marks.push_back({static_cast<double>(event.k), event.text});
+  add_events(curves, plot);
   return plot;
+}
+
+Plot widths_of(const RunFiles& files, const Curves& curves, std::size_t i) {
+  Plot plot{"k", "width of " + axis_of(files.labels().states, "x", i), false, {}};
+  double smallest = infinity, largest = 0;
+  for (std::size_t p = 0; p < curves.pipelines.size(); ++p) {
+    const Thinner& width = curves.pipelines[p].width[i];
+    if (!width.has_values()) continue;
+    plot.series.push_back(width.line(files.pipelines()[p].name, static_cast<int>(p)));
+    smallest = std::min(smallest, width.smallest());
+    largest = std::max(largest, width.largest());
+  }
+  plot.log_y = is_logarithmic(smallest, largest);
+  add_events(curves, plot);
+  return plot;
+}
+
+/// Bands of the bounds, or of the bounds less the truth, where a transient hides them.
+void add_steady_state(const std::string& id, const std::string& title, const RunFiles& files,
+                      const Plot& bands, const Plot& widths, Report& report) {
+  std::vector<const Series*> lines;
+  for (const Series& series : widths.series) lines.push_back(&series);
+  const auto from = end_of_transient(lines);
+  if (!from) return;
+  auto plot = hidden_after(bands, *from);
+  if (!plot) return;
+  report.figures.push_back(
+      {id, section::bounds, title + " after the transient",
+       fmt::format("From {} on: no width exceeds twice the largest one of its second half.",
+                   time_text(files.labels(), static_cast<std::int64_t>(*from))),
+       *std::move(plot)});
 }
 
 }  // namespace
@@ -77,21 +111,33 @@ void add_bounds(const RunFiles& files, const Curves& curves, Report& report) {
     caption +=
         " Inner bands are reached by some trajectory: what lies between them and the bounds is the "
         "price of enclosing.";
+  std::vector<Figure> errors, widths;
+  Report late;
   for (std::size_t i = 0; i < curves.states; ++i) {
-    report.figures.push_back({fmt::format("bounds_{}", i + 1), section::bounds,
-                              "Bounds of " + title_of(files.labels().states, "state", i), caption,
-                              bounds_of(files, curves, i)});
-  }
-  for (std::size_t i = 0; i < curves.states; ++i) {
-    Plot plot = errors_of(files, curves, i);
-    if (plot.series.empty()) continue;
+    const std::string state = title_of(files.labels().states, "state", i);
+    Plot band = bounds_of(files, curves, i), error = errors_of(files, curves, i),
+         width = widths_of(files, curves, i);
+    const std::string title = "Bounds of " + state, error_title = title + " less its true value";
+    add_steady_state(fmt::format("steady_state_{}", i + 1),
+                     error.series.empty() ? title : error_title, files,
+                     error.series.empty() ? band : error, width, late);
     report.figures.push_back(
-        {fmt::format("bounds_less_truth_{}", i + 1), section::bounds,
-         "Bounds of " + title_of(files.labels().states, "state", i) + " less its true value",
-         "How far the bounds lie from the true state, which is 0 here: a band "
-         "that leaves 0 out does not hold it.",
-         std::move(plot)});
+        {fmt::format("bounds_{}", i + 1), section::bounds, title, caption, std::move(band)});
+    if (!error.series.empty()) {
+      errors.push_back({fmt::format("bounds_less_truth_{}", i + 1), section::bounds, error_title,
+                        "How far the bounds lie from the true state, which is 0 here: a band "
+                        "that leaves 0 out does not hold it.",
+                        std::move(error)});
+    }
+    if (!width.series.empty()) {
+      widths.push_back({fmt::format("width_{}", i + 1), section::bounds,
+                        "Width of the bounds of " + state,
+                        "Upper less lower bound over time; none where the estimate is empty.",
+                        std::move(width)});
+    }
   }
+  for (std::vector<Figure>* group : {&errors, &late.figures, &widths})
+    std::move(group->begin(), group->end(), std::back_inserter(report.figures));
 }
 
 }  // namespace cordon::report

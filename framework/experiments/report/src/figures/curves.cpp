@@ -85,11 +85,12 @@ class StepsReader {
     const std::size_t error_states =
         TruthReader(files, curves_.all_states).is_known() ? curves_.states : 0;
     const std::size_t series =
-        pipelines * (curves_.states + inner_states + error_states + metrics_.size());
+        pipelines * (2 * curves_.states + inner_states + error_states + metrics_.size());
     if (series > max_curves) table_.refuse("holds more curves than a report can show");
     const Thinner curve(points_per_series(files.detail(), series));
     StepCurves empty;
     empty.hull.assign(curves_.states, curve);
+    empty.width.assign(curves_.states, curve);
     empty.inner.assign(inner_states, curve);
     empty.error.assign(error_states, curve);
     empty.metrics.assign(metrics_.size(), curve);
@@ -118,7 +119,8 @@ class StepsReader {
     }
     drop_texts();
     for (const StepCurves& steps : curves_.pipelines) {
-      for (const auto* group : {&steps.hull, &steps.inner, &steps.error, &steps.metrics}) {
+      for (const auto* group :
+           {&steps.hull, &steps.width, &steps.inner, &steps.error, &steps.metrics}) {
         for (const Thinner& curve : *group) curves_.thinned = curves_.thinned || curve.is_thinned();
       }
     }
@@ -156,6 +158,10 @@ class StepsReader {
     steps.last = std::max(steps.last, k);
     if (empty && !was_empty && steps.empty_from.size() < max_marks) steps.empty_from.push_back(k);
     add_bounds(table_, hull_, empty, k, steps.hull);
+    for (std::size_t i = 0; i < steps.width.size(); ++i) {
+      const double width = table_.number(hull_.upper[i]) - table_.number(hull_.lower[i]);
+      steps.width[i].add(static_cast<double>(k), empty ? not_available : width);
+    }
     add_bounds(table_, inner_, empty, k, steps.inner);
     for (std::size_t i = 0; i < metrics_.size(); ++i) {
       if (!numeric_[i]) continue;

@@ -18,6 +18,7 @@ namespace cordon::report {
 /// Steps of one pipeline.
 struct StepCurves {
   std::vector<Thinner> hull, inner;  ///< by state
+  std::vector<Thinner> width;        ///< by state, of the hull; none of ∅
   std::vector<Thinner> error;    ///< by state: the hull less the true state; none: it is not known
   std::vector<Thinner> metrics;  ///< by column
   std::int64_t first = -1, last = -1;  ///< k; -1: there are no steps

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the observers saw: inputs and outputs over time, with their gaps.
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -41,6 +42,54 @@ void add(const ColumnReader& table, std::int64_t k, std::vector<Signal>& signals
   }
 }
 
+/// The samples that pipelines have left out as outliers, on the curve of their output.
+class LeftOut {
+ public:
+  explicit LeftOut(const RunFiles& files) : files_(files) {
+    for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
+      const auto summary = object_of(files.tree(p), "summary");
+      const auto outliers = summary ? object_of(*summary, "outliers") : std::nullopt;
+      if (!outliers) continue;
+      for (const json::Cursor& sample : items_of(*outliers, "left_out")) {
+        if (!sample.is(json::Value::Kind::object)) continue;
+        for (const json::Cursor& output : items_of(sample, "outputs"))
+          places_.insert({value_of(sample, "k"), {p, value_at(output)}});
+      }
+    }
+  }
+
+  void add(double k, const ColumnReader& table, const std::vector<Signal>& outputs) {
+    for (auto [at, end] = places_.equal_range(k); at != end; ++at) {
+      const auto [pipeline, output] = at->second;
+      if (!(output >= 1 && output <= static_cast<double>(outputs.size()))) continue;
+      const std::size_t i = static_cast<std::size_t>(output) - 1;
+      Series& series = series_[{i, pipeline}];
+      series.x.push_back(k);
+      series.y.push_back(table.number(outputs[i].column));
+    }
+  }
+
+  /// Appends those of output i; are there any?
+  bool append(std::size_t i, Plot& plot) {
+    bool any = false;
+    for (std::size_t p = 0; p < files_.pipelines().size(); ++p) {
+      const auto found = series_.find({i, p});
+      if (found == series_.end()) continue;
+      found->second.kind = Series::Kind::points;
+      found->second.name = "left out by " + files_.pipelines()[p].name;
+      found->second.pipeline = static_cast<int>(p);
+      plot.series.push_back(std::move(found->second));
+      any = true;
+    }
+    return any;
+  }
+
+ private:
+  const RunFiles& files_;
+  std::multimap<double, std::pair<std::size_t, double>> places_;  ///< by k: pipeline and output
+  std::map<std::pair<std::size_t, std::size_t>, Series> series_;  ///< by output and pipeline
+};
+
 Plot plot_of(const Signal& signal, const std::string& label, Series::Kind kind,
              const Curves& curves) {
   Plot plot{"k", label, false, {signal.curve.line("", of_data, kind)}};
@@ -58,11 +107,13 @@ void add_data(const RunFiles& files, const Curves& curves, Report& report) {
   std::string more_inputs, more_outputs;
   std::vector<Signal> inputs = signals_of(files, *table, "u_", more_inputs),
                       outputs = signals_of(files, *table, "y_", more_outputs);
+  LeftOut left_out(files);
   std::int64_t samples = 0;
   while (table->next()) {
     const std::int64_t k = table->integer(k_column);
     add(*table, k, inputs);
     add(*table, k, outputs);
+    left_out.add(static_cast<double>(k), *table, outputs);
     ++samples;
   }
   for (std::size_t i = 0; i < outputs.size(); ++i) {
@@ -74,9 +125,11 @@ void add_data(const RunFiles& files, const Curves& curves, Report& report) {
     // a line would not show a value between two gaps
     const auto kind = y.missing > 0 ? Series::Kind::points : Series::Kind::line;
     const Labels::Names& names = files.labels().outputs;
+    Plot plot = plot_of(y, axis_of(names, "y", i), kind, curves);
+    if (left_out.append(i, plot)) caption += " Points: samples that were left out as outliers.";
     report.figures.push_back({fmt::format("output_{}", i + 1), section::data,
                               title_of(names, "Output", i), caption + more_outputs,
-                              plot_of(y, axis_of(names, "y", i), kind, curves)});
+                              std::move(plot)});
   }
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     report.figures.push_back(

@@ -10,9 +10,6 @@ namespace cordon::report {
 
 namespace {
 
-/// Values over several powers of ten, all of them positive, are read better so.
-constexpr double log_from = 100;
-
 struct Curve {
   const Thinner* values = nullptr;
   int pipeline = of_data;
@@ -28,7 +25,7 @@ Plot plot_of(const RunFiles& files, const std::vector<Curve>& curves, const std:
     smallest = std::min(smallest, values->smallest());
     largest = std::max(largest, values->largest());
   }
-  plot.log_y = smallest > 0 && largest >= log_from * smallest;
+  plot.log_y = is_logarithmic(smallest, largest);
   return plot;
 }
 

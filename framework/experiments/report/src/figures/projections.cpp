@@ -101,6 +101,19 @@ struct Drawn {
   std::optional<std::pair<double, double>> truth;
 };
 
+/// Beyond it, windows around a set may have edges that are no numbers.
+constexpr double largest_drawn = 1e150;
+
+bool is_drawn(double x, double y) {
+  return std::abs(x) <= largest_drawn && std::abs(y) <= largest_drawn;
+}
+
+bool is_drawn(const PlaneSet& set) {
+  return is_drawn(set.lower, set.upper) &&
+         std::all_of(set.vertices.begin(), set.vertices.end(),
+                     [](const PlanePoint& p) { return is_drawn(p.x, p.y); });
+}
+
 /// Without bounded sets: around what a strip has nearest to the origin.
 Extent around_strips(const Drawn& drawn) {
   Extent extent;
@@ -206,7 +219,7 @@ class Projector {
       for (std::size_t q = 0; q < pairs_.size(); ++q) {
         const double a = x[static_cast<std::size_t>(pairs_[q].first)],
                      b = x[static_cast<std::size_t>(pairs_[q].second)];
-        if (std::isfinite(a) && std::isfinite(b)) drawn(k)[q].truth = {a, b};
+        if (is_drawn(a, b)) drawn(k)[q].truth = {a, b};
       }
     }
   }
@@ -264,8 +277,12 @@ class Projector {
     std::vector<Drawn>& pictures = drawn(row.k);
     for (std::size_t q = 0; q < pairs_.size(); ++q) {
       try {
-        pictures[q].sets.emplace_back(pipeline,
-                                      project(row.set, pairs_[q].first, pairs_[q].second, limits));
+        PlaneSet set = project(row.set, pairs_[q].first, pairs_[q].second, limits);
+        if (is_drawn(set)) {
+          pictures[q].sets.emplace_back(pipeline, std::move(set));
+        } else {
+          ++failed_;
+        }
       } catch (const Error&) {
         ++failed_;
       }

@@ -70,15 +70,24 @@ std::string title_of(const Labels::Names& names, const std::string& noun, std::s
   return i < names.size() ? names[i] : fmt::format("{} {}", noun, i + 1);
 }
 
-double value_of(const Cursor& object, std::string_view key) {
-  const auto at = object.find(key);
-  if (!at || at->is(Kind::null)) return not_available;
-  if (at->is(Kind::text)) {
-    const auto word = read_choice(*at, {"inf", "-inf"});
+double value_at(const Cursor& at) {
+  if (at.is(Kind::null)) return not_available;
+  if (at.is(Kind::text)) {
+    const auto word = read_choice(at, {"inf", "-inf"});
     if (!word) return not_available;
     return *word == "inf" ? infinity : -infinity;
   }
-  return read_number(*at).value_or(not_available);
+  return read_number(at).value_or(not_available);
+}
+
+double value_of(const Cursor& object, std::string_view key) {
+  const auto at = object.find(key);
+  return at ? value_at(*at) : not_available;
+}
+
+std::optional<Cursor> object_of(const Cursor& at, const char* key) {
+  const auto found = at.find(key);
+  return found && found->is(Kind::object) ? found : std::nullopt;
 }
 
 std::string text_of(const Cursor& object, std::string_view key) {

@@ -84,8 +84,12 @@ class RunFiles {
 std::string axis_of(const Labels::Names& names, const std::string& symbol, std::size_t i);
 std::string title_of(const Labels::Names& names, const std::string& noun, std::size_t i);
 
-/// A number, "inf", "-inf" or null (NaN); NaN if it is missing.
+/// A number, "inf", "-inf" or null (NaN).
+double value_at(const json::Cursor& at);
+/// The same of a member; NaN if it is missing.
 double value_of(const json::Cursor& object, std::string_view key);
+/// A member that is an object; nothing if it is something else, or missing.
+std::optional<json::Cursor> object_of(const json::Cursor& at, const char* key);
 /// A text to be shown; "" if it is null or missing.
 std::string text_of(const json::Cursor& object, std::string_view key);
 /// The items of a list; none if it is null or missing.

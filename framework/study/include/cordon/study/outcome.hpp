@@ -228,6 +228,13 @@ struct DesignedOutcome {
   std::vector<ExperimentRow> experiments;  ///< by true mode
 };
 
+/// Microseconds that steps took, predict + correct + reduce or a diagnosis; 0 without steps.
+struct StepTimes {
+  double median = 0;
+  double percentile_99 = 0;  ///< 99 of 100 steps took no longer
+  double largest = 0;
+};
+
 struct PipelineOutcome : PipelineTask<EstimationOutcome, DiagnosisOutcome, DesignedOutcome> {
   std::string name = {}, backend = {};
   std::int64_t steps = 0;  ///< samples; of a diagnosis those of the first seed
@@ -239,9 +246,8 @@ struct PipelineOutcome : PipelineTask<EstimationOutcome, DiagnosisOutcome, Desig
   std::int64_t violated_at = -1;
   std::string error = {};  ///< the pipeline stopped with this error; the others go on
   std::optional<Errc> error_code = {};
-  double median_step_us = 0;   ///< median of predict + correct + reduce
-  double largest_step_us = 0;  ///< the largest of them
-  double wall_s = 0;           ///< wall-clock time of the whole pipeline, data and results included
+  StepTimes step_us;
+  double wall_s = 0;  ///< wall-clock time of the whole pipeline, data and results included
 };
 
 struct RunOutcome {

@@ -68,6 +68,8 @@ std::vector<Measure> list_of_own() {
       {.name = "experiments_isolated", .title = "isolated", .better = more},
       {.name = "experiments_wrong", .title = "wrong", .better = less, .in_comparison = if_any},
       {.name = "step_us", .title = "µs/step", .better = less, .ranked = true},
+      {.name = "step_99_us", .title = "99 % of steps [µs]", .better = less},
+      {.name = "step_largest_us", .title = "largest step [µs]", .better = less},
       {.name = "wall_s", .title = "time [s]", .better = less}};
   for (const char* name :
        {"steps", "consistent", "inconsistent_from", "assumptions_until", "outside_from",

@@ -191,8 +191,11 @@ std::vector<ResultNumber> numbers_of(const PipelineOutcome& outcome) {
   } else {
     add_estimation(numbers, outcome);
   }
-  const double step = outcome.steps > 0 ? outcome.median_step_us : not_available;
-  numbers.measured("step_us", step);
+  const StepTimes none{not_available, not_available, not_available};
+  const StepTimes& step = outcome.steps > 0 ? outcome.step_us : none;
+  numbers.measured("step_us", step.median);
+  numbers.measured("step_99_us", step.percentile_99);
+  numbers.measured("step_largest_us", step.largest);
   if (found && outcome.steps > 0) {
     numbers.measured("predict_us", found->median_us.predict);
     numbers.measured("correct_us", found->median_us.correct);
