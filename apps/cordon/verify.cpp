@@ -116,9 +116,18 @@ nlohmann::ordered_json assumption_json(const VerifiedPipeline& p) {
           {"proven_again", to_string(p.fails_again)}};
 }
 
+/// Was anything checked, and did all of it hold?
+bool is_verified(const VerifyOutcome& outcome) {
+  const auto& all = outcome.pipelines;
+  return !outcome.violation && disagreement(outcome).empty() &&
+         std::any_of(all.begin(), all.end(), is_checked) &&
+         std::all_of(all.begin(), all.end(),
+                     [](const VerifiedPipeline& p) { return p.undecided == 0; });
+}
+
 std::string report_json(const VerifyOutcome& outcome) {
   using Object = nlohmann::ordered_json;
-  Object report{{"verified", !outcome.violation && disagreement(outcome).empty()},
+  Object report{{"verified", is_verified(outcome)},
                 {"by_samples", outcome.by_samples},
                 {"pipelines", Object::array()},
                 {"violation", nullptr},

@@ -37,7 +37,8 @@ Effectiveness::Effectiveness(const Model& model, const SetBackend& backend)
     : model_(model),
       backend_(backend),
       V_(backend.import(model.V)),
-      noise_widths_(half_widths(model.V, model.linear.Dv)),
+      noise_thickness_(model.linear.D.isZero(0) ? Thickness()
+                                                : Thickness(model.V, model.linear.Dv)),
       f_(model.linear.actuator_center()),
       f_radius_(model.linear.actuator_radius()),
       g_(model.linear.sensor_center()),
@@ -167,7 +168,7 @@ Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& n
   const bool as_set = has_inputs && inputs_enter_as_sets();  // g D u, which is rounded otherwise
   const Vector z = as_set ? Vector(now.y) : Vector(now.y - g_.cwiseProduct(through));
   if (plain_outputs_)
-    return RoundingRoom(backend_, z, terms, noise_widths_).correct(X, {C, z, {m.Dv, V_}});
+    return RoundingRoom(backend_, z, terms, noise_thickness_).correct(X, {C, z, {m.Dv, V_}});
 
   Vector open = Vector::Zero(m.outputs()), zeta = open;
   if (!interval_outputs_.empty()) open = interval_spread(m.C_radius, magnitudes(X), m.outputs());
@@ -190,7 +191,7 @@ Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& n
   T << m.Dv, g_.asDiagonal() * input_spread(m.D, now.u), output_spread(zeta),
       interval_columns(open), g_.asDiagonal() * m.D.leftCols(inputs);
   const Matrix scaled = g_.asDiagonal() * C;
-  const RoundingRoom room(backend_, z(used), terms(used), noise_widths_(used));
+  const RoundingRoom room(backend_, z(used), terms(used), noise_thickness_.of_rows(used));
   Enclosure corrected =
       room.correct(X, {scaled(used, Eigen::all), z(used), {T(used, Eigen::all), noise}});
   if (has_output_ranges() || !interval_outputs_.empty()) corrected.tightness = Tightness::outer;

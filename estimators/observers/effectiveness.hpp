@@ -21,6 +21,7 @@
 
 #include "cordon/interfaces/backend.hpp"
 #include "cordon/interfaces/model.hpp"
+#include "observers/rounding_room.hpp"
 
 namespace cordon::estimators {
 
@@ -82,7 +83,7 @@ class Effectiveness {
   const Model& model_;
   const SetBackend& backend_;
   Enclosure V_;
-  Vector noise_widths_;  ///< half widths of Dv V
+  Thickness noise_thickness_;  ///< of Dv V; without D nothing is added up beside it
   Vector f_, f_radius_, g_, g_radius_;
   std::vector<Index> ranged_inputs_, ranged_outputs_;
   std::vector<Index> interval_outputs_;  ///< rows of C with a radius

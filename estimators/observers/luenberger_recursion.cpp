@@ -77,7 +77,9 @@ LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L,
   if (has_spread(m.A_radius)) A_radius_ = m.A_radius;
   if (has_spread(m.B_radius)) B_radius_ = m.B_radius;
   if (has_spread(m.C_radius)) C_radius_ = (g + m.sensor_radius()).asDiagonal() * m.C_radius;
+  W_thickness_ = Thickness(model.W, Bw_);
   use_gain(std::move(L));
+  thickness_ = Thickness(error_noise());
 }
 
 void LuenbergerRecursion::use_gain(Matrix L) {
@@ -100,12 +102,11 @@ void LuenbergerRecursion::take_sizes() {
   x_terms_ = A_.cwiseAbs() + y_terms_ * C_.cwiseAbs();
   u_terms_ = (B_.cwiseAbs() + y_terms_ * D_.cwiseAbs()) * f_.cwiseAbs().asDiagonal();
   constant_terms_ = Bw_.cwiseAbs() * W_size_ + y_terms_ * (Dv_.cwiseAbs() * V_size_);
-  widths_ = error_noise().cwiseAbs().rowwise().sum();
   x_norm_ = row_norm(x_terms_);
   y_norm_ = row_norm(y_terms_);
   u_norm_ = row_norm(u_terms_);
   constant_norm_ = row_norm(constant_terms_);
-  least_width_ = widths_.size() ? widths_.minCoeff() : 0.0;
+  thickness_ = W_thickness_;  // that of both costs more than a step, and is no thinner
 }
 
 std::optional<RoundingRoom> LuenbergerRecursion::room_of(const Enclosure& X, VectorIn shift,
@@ -117,12 +118,13 @@ std::optional<RoundingRoom> LuenbergerRecursion::room_of(const Enclosure& X, Vec
   if (!std::isfinite(most_x) || reach.is_empty()) return std::nullopt;
   const double most =
       x_norm_ * most_x + y_norm_ * largest(now.y) + u_norm_ * largest(now.u) + constant_norm_;
-  if (!outward && !RoundingRoom::may_be_needed(most, least_width_)) return std::nullopt;
+  if (!outward && !RoundingRoom::may_be_needed(most, thickness_)) return std::nullopt;
   const Vector terms = x_terms_ * largest_entries(reach) + y_terms_ * now.y.cwiseAbs() +
                        u_terms_ * now.u.cwiseAbs() + constant_terms_;
   if (outward) return std::optional<RoundingRoom>(std::in_place, *backend_, terms);
+  if (!RoundingRoom::may_be_needed(terms, thickness_)) return std::nullopt;
   const Vector sum = shift + w_ + product(Ao_, reach.center());
-  return std::optional<RoundingRoom>(std::in_place, *backend_, sum, terms, widths_);
+  return std::optional<RoundingRoom>(std::in_place, *backend_, sum, terms, thickness_);
 }
 
 Matrix LuenbergerRecursion::error_noise() const {
@@ -232,6 +234,8 @@ Enclosure LuenbergerRecursion::explained_outputs(const Enclosure& E, VectorIn x,
   const bool needs_X = sensor_radius_.size() != 0 || C_radius_.size() != 0;
   const Enclosure X = needs_X ? backend_->affine_map(E, state_unit_, x) : E;
   add_open(summands, Target::output, X, now.u, false);
+  const RoundingRoom room(*backend_, residual_size(x, now));  // of y - D u - C x
+  if (room.is_needed()) summands.terms.push_back(room.term());
   return backend_->predict(V0_, {minus_Dv_, residual(x, now), summands.terms});
 }
 

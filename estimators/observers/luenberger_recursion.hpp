@@ -106,8 +106,9 @@ class LuenbergerRecursion {
   Vector state_drift_, w_, v_;          ///< Bw w̄, Bw w̄ - L Dv v̄, Dv v̄
   Matrix x_terms_, y_terms_, u_terms_;  ///< |A| + |L||C̄|, |L|, (|B| + |L||D̄|) f̄
   Vector W_size_, V_size_;              ///< of the entries of w and v
-  Vector constant_terms_, widths_;      ///< sizes of Bw W and L Dv V; half widths of their sum
-  double x_norm_ = 0, y_norm_ = 0, u_norm_ = 0, constant_norm_ = 0, least_width_ = 0;
+  Vector constant_terms_;               ///< sizes of Bw W and L Dv V
+  Thickness W_thickness_, thickness_;   ///< of Bw W; of Bw W ⊕ (-L Dv V), or as that of Bw W
+  double x_norm_ = 0, y_norm_ = 0, u_norm_ = 0, constant_norm_ = 0;
   Matrix raw_C_, raw_D_;                   ///< C and |D| max f, for Δ
   Vector sensor_radius_;                   ///< no entries: exact sensors
   Matrix A_radius_, B_radius_, C_radius_;  ///< 0×0: exact; of C: max g rad(C)

@@ -27,7 +27,7 @@ class PredictionCorrection final : public Observer {
         X0_(initial_set_from(model(), params)),
         W_(backend().import(model().W)),
         disturbance_(linalg::product(model().linear.Bw, model().W.c)),
-        disturbance_widths_(half_widths(model().W, model().linear.Bw)),
+        thickness_(model().W, model().linear.Bw),
         effectiveness_(model(), backend()),
         recursion_(effectiveness_.recursion({&model().linear.B, &model().linear.D})) {
     if (params.has("admissible_set")) admit(params.set_form("admissible_set"), budget_from(params));
@@ -74,7 +74,7 @@ class PredictionCorrection final : public Observer {
   /// For B u beside the center of Bw W.
   RoundingRoom room_of(const Vector& shift, VectorIn u) const {
     const Vector terms = effectiveness_.input_terms(model().linear.B, u) + disturbance_.cwiseAbs();
-    return {backend(), shift + disturbance_, terms, disturbance_widths_};
+    return {backend(), shift + disturbance_, terms, thickness_};
   }
 
   Enclosure corrected(const Enclosure& X, const Sample& now) {
@@ -86,7 +86,8 @@ class PredictionCorrection final : public Observer {
   Budget budget_;
   LineForm X0_;
   Enclosure W_, X_;
-  Vector disturbance_, disturbance_widths_;  ///< center and half widths of Bw W
+  Vector disturbance_;   ///< center of Bw W
+  Thickness thickness_;  ///< of Bw W
   Effectiveness effectiveness_;
   Tightness recursion_;
 };

@@ -211,7 +211,7 @@ class PseudoInverseObserver final : public Observer {
                             largest(x_center_.cwiseAbs() + x_radius_);
     const double most =
         now_->TB_norm * u + (row_norm(L_) + row_norm(now_->N)) * y + centers + of_state;
-    if (!RoundingRoom::may_be_needed(most, now_->least_width)) return std::nullopt;
+    if (!RoundingRoom::may_be_needed(most, now_->thickness)) return std::nullopt;
     const auto seen = [&](const PseudoInverseOutputs& of, const Sample& sample) {
       return Vector(sample.y.cwiseAbs() + effectiveness_.input_terms(of.used.D, sample.u));
     };
@@ -220,10 +220,10 @@ class PseudoInverseObserver final : public Observer {
                          linalg::product(L_.cwiseAbs(), seen(*before_, before)) +
                          linalg::product(now_->N.cwiseAbs(), seen(*now_, now)) + center.cwiseAbs() +
                          state_terms();
-    const Vector widths = now_->disturbance_widths + half_widths(model().V, minus_LDv_);
+    if (!RoundingRoom::may_be_needed(terms, now_->thickness)) return std::nullopt;
     return std::optional<RoundingRoom>(std::in_place, backend(),
                                        shift_ + center + linalg::product(map_, x_center_), terms,
-                                       widths);
+                                       now_->thickness);
   }
 
   /// (|T| |A| + |L| |C|) |x|.

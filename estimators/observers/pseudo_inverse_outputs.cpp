@@ -109,8 +109,10 @@ PseudoInverseOutputs::PseudoInverseOutputs(const Model& full, const std::vector<
   else if (rounds_outward)
     inverse_error = Matrix::Zero(n, n);
   disturbance = linalg::product(TBw, full.W.c) + linalg::product(minus_NDv, full.V.c);
-  disturbance_widths = half_widths(full.W, TBw) + half_widths(full.V, minus_NDv);
-  if (disturbance_widths.size()) least_width = disturbance_widths.minCoeff();
+  const Matrix by_w = columns_of(full.W, TBw), by_v = columns_of(full.V, minus_NDv);
+  Matrix both(n, by_w.cols() + by_v.cols());
+  both << by_w, by_v;
+  thickness = Thickness(both);
 }
 
 }  // namespace cordon::estimators

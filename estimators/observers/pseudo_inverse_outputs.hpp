@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cordon/interfaces/model.hpp"
+#include "observers/rounding_room.hpp"
 
 namespace cordon::estimators {
 
@@ -28,8 +29,8 @@ struct PseudoInverseOutputs {
                          ///< not round outward
   Matrix TA_terms;       ///< |T| |A|
   double TB_norm = 0, TA_norm = 0;
-  Vector disturbance, disturbance_widths;  ///< center and half widths of T Bw W ⊕ (-N Dv V)
-  double least_width = 0;
+  Vector disturbance;   ///< center of T Bw W ⊕ (-N Dv V)
+  Thickness thickness;  ///< of the same
   // of the sample before
   Matrix noise_generators;  ///< Dv Gv
   Matrix C_transposed;

@@ -13,21 +13,59 @@ namespace cordon::estimators {
 namespace {
 
 constexpr double share = tolerances::product_noise;
-constexpr double negligible = 1e-10;  // of a half width
+constexpr double negligible = 1e-10;  // of the set
 constexpr double cancelled = 0.25;
+constexpr double line_length = 1e8;  // of its largest entry
 
 }  // namespace
 
+Thickness::Thickness(const Matrix& N) {
+  const Index n = N.rows();
+  shares_ = Matrix::Constant(N.cols(), n, infinity);
+  if (N.size() == 0 || !N.allFinite()) return;
+  const Vector units = N.cwiseAbs().rowwise().maxCoeff();
+  const Vector scale = (units.array() > 0).select(units.cwiseInverse(), 1.0);
+  const Matrix scaled = scale.asDiagonal() * N;
+  const Matrix inverse = linalg::pseudo_inverse(scaled, tolerances::rank);
+  // column i of the inverse makes coordinate i alone, if that can be made
+  const Matrix made = linalg::product(scaled, inverse);
+  for (Index i = 0; i < n; ++i) {
+    if ((made.col(i) - Vector::Unit(n, i)).cwiseAbs().maxCoeff() <= tolerances::rank)
+      shares_.col(i) = inverse.col(i).cwiseAbs() * scale[i];
+  }
+  largest_ = shares_.rowwise().sum().maxCoeff();
+}
+
+Thickness::Thickness(const LineForm& X, MatrixIn T) : Thickness(columns_of(X, T)) {}
+
+double Thickness::share_of(VectorIn r) const {
+  if (shares_.rows() == 0) return (r.array() == 0).all() ? 0 : infinity;
+  Vector sums = Vector::Zero(shares_.rows());
+  for (Index i = 0; i < r.size(); ++i) {
+    if (r[i] != 0) sums += r[i] * shares_.col(i);
+  }
+  return sums.maxCoeff();
+}
+
+Thickness Thickness::of_rows(const std::vector<Index>& rows) const {
+  if (shares_.rows() == 0) return *this;
+  Thickness some;
+  some.shares_ = shares_(Eigen::all, rows);
+  some.largest_ = largest_;
+  return some;
+}
+
 RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn terms,
-                           VectorIn half_widths)
+                           const Thickness& thickness)
     : backend_(backend) {
   std::vector<Index> rows;
+  Vector room = Vector::Zero(sum.size());
   for (Index i = 0; i < sum.size() && backend.info().rounding == Rounding::nominal; ++i) {
-    const bool stands = std::abs(sum[i]) >= cancelled * terms[i],
-               is_small = share * terms[i] <= negligible * half_widths[i];
-    if (!stands && !is_small)
-      rows.push_back(i);  // NaN, of terms that overflow, is left to the backend's refusal
+    if (std::abs(sum[i]) >= cancelled * terms[i]) continue;
+    rows.push_back(i);  // NaN, of terms that overflow, is left to the backend's refusal
+    room[i] = share * terms[i];
   }
+  if (!rows.empty() && thickness.share_of(room) <= negligible) rows.clear();
   make(rows, terms);
 }
 
@@ -50,8 +88,12 @@ void RoundingRoom::make(const std::vector<Index>& rows, VectorIn terms) {
   factors_ = backend_.box({-ones, ones});
 }
 
-bool RoundingRoom::may_be_needed(double most, double least_width) {
-  return !(share * most <= negligible * least_width);
+bool RoundingRoom::may_be_needed(double most, const Thickness& thickness) {
+  return !(share * most * thickness.largest_share() <= negligible);
+}
+
+bool RoundingRoom::may_be_needed(VectorIn terms, const Thickness& thickness) {
+  return !(share * thickness.share_of(terms) <= negligible);
 }
 
 Enclosure RoundingRoom::correct(const Enclosure& X, const CorrectionArgs& measurement) const {
@@ -67,7 +109,10 @@ Box reach_of(const Set& X) {
   if (size.constraints == 0 && size.lines == 0) return X.interval_hull();
   if (!X.backend().info().exact_exchange) return X.interval_hull();
   const LineForm form = X.line_form();
-  const Vector widths = half_widths(form, Matrix::Identity(form.dim(), form.dim()));
+  Vector widths = form.G.cwiseAbs().rowwise().sum();
+  for (Index i = 0; i < widths.size(); ++i) {
+    if (form.M.cols() > 0 && !form.M.row(i).isZero(0)) widths[i] = infinity;
+  }
   return {form.c - widths, form.c + widths};
 }
 
@@ -75,13 +120,16 @@ double row_norm(const Matrix& A) {
   return A.size() ? A.cwiseAbs().rowwise().sum().maxCoeff() : 0.0;
 }
 
-Vector half_widths(const LineForm& X, MatrixIn T) {
-  Vector widths = linalg::product(T, X.G).cwiseAbs().rowwise().sum();
-  const Vector lines = linalg::product(T, X.M).cwiseAbs().rowwise().sum();
-  for (Index i = 0; i < widths.size(); ++i) {
-    if (lines[i] > 0) widths[i] = infinity;
+Matrix columns_of(const LineForm& X, MatrixIn T) {
+  if (T.rows() == 0) return Matrix(0, X.generators() + X.lines());
+  Matrix N(T.rows(), X.generators() + X.lines());
+  N << linalg::product(T, X.G), linalg::product(T, X.M);
+  const double size = X.generators() > 0 ? N.leftCols(X.generators()).cwiseAbs().maxCoeff() : 1.0;
+  for (Index j = X.generators(); j < N.cols(); ++j) {
+    const double entry = N.col(j).cwiseAbs().maxCoeff();
+    if (entry > 0) N.col(j) *= line_length * (size > 0 ? size : 1.0) / entry;
   }
-  return widths;
+  return N;
 }
 
 }  // namespace cordon::estimators

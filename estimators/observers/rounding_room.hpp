@@ -8,24 +8,46 @@
 
 namespace cordon::estimators {
 
+/// How thick Z = {N ξ : ‖ξ‖∞ ≤ 1} is, the sum of the disturbances of a step. What is wide in every
+/// coordinate may be flat all the same, as a disturbance that acts on two states alike is across.
+class Thickness {
+ public:
+  Thickness() = default;  ///< of {0}
+  explicit Thickness(const Matrix& N);
+  /// Of {T x : x ∈ X} without its constraints.
+  Thickness(const LineForm& X, MatrixIn T);
+
+  /// A σ with {x : |x_i| ≤ r_i} ⊆ σ Z, about the smallest; ∞: there is none.
+  double share_of(VectorIn r) const;
+  /// No r with entries up to 1 has a larger share.
+  double largest_share() const { return largest_; }
+  /// The same of these coordinates alone.
+  Thickness of_rows(const std::vector<Index>& rows) const;
+
+ private:
+  Matrix shares_;  ///< |N⁺|; columns of coordinates that N does not reach alone are infinite
+  double largest_ = infinity;
+};
+
 /// A vector of products and sums that cancel, y - D u or B u, is off by rounding errors of its
 /// terms, however small it is. A backend of nominal rounding sees what is left alone, and a set
 /// that is thinner than these errors would lose the truth: a box of 1e-14 of the terms makes room
 /// for them. None where nothing cancels (the sum is a quarter of its terms or more, so that its own
-/// last digits are as large), where the row's set is 1e10 times as wide, and for backends that
+/// last digits are as large), where the set holds the box 1e10 times as wide, and for backends that
 /// round outward: these take the products as sets.
 class RoundingRoom {
  public:
-  /// Per row `sum`, the magnitudes of its terms added up, and the half width of the set that it is
-  /// the center of (may be +inf).
-  RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn terms, VectorIn half_widths);
+  /// Per row `sum`, and the magnitudes of its terms added up; `thickness` of the set that it is the
+  /// center of.
+  RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn terms, const Thickness& thickness);
 
   /// The same in every row, whatever the sum and the set are, and for every backend.
   RoundingRoom(const SetBackend& backend, VectorIn terms);
 
-  /// Can any row need room whose terms add up to `most`, and whose set is no narrower than
-  /// `least_width`? At no cost.
-  static bool may_be_needed(double most, double least_width);
+  /// Can any row need room whose terms add up to `most`? At no cost.
+  static bool may_be_needed(double most, const Thickness& thickness);
+  /// The same of rows by their own terms.
+  static bool may_be_needed(VectorIn terms, const Thickness& thickness);
 
   bool is_needed() const { return columns_.cols() > 0; }
   /// The box, to be added to what is predicted. Lives as long as the room.
@@ -49,7 +71,8 @@ Box reach_of(const Set& X);
 /// The largest sum of magnitudes of a row.
 double row_norm(const Matrix& A);
 
-/// Half widths of {T x : x ∈ X} without its constraints; infinite along lines.
-Vector half_widths(const LineForm& X, MatrixIn T);
+/// The columns of {T x : x ∈ X} without its constraints; lines 1e8 times as long as its largest
+/// entry.
+Matrix columns_of(const LineForm& X, MatrixIn T);
 
 }  // namespace cordon::estimators

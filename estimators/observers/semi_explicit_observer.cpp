@@ -65,9 +65,9 @@ class SemiExplicitObserver final : public Observer {
     stacked_Bw_ = stacked(transformed_.Bw);
     stacked_rows_ = stacked(transformed_.rows);
     disturbance_ = linalg::product(stacked_Bw_, model().W.c);
-    disturbance_widths_ = half_widths(model().W, stacked_Bw_);
+    thickness_ = Thickness(model().W, stacked_Bw_);
     static_disturbance_ = linalg::product(transformed_.static_Bw, model().W.c);
-    static_widths_ = half_widths(model().W, transformed_.static_Bw);
+    static_thickness_ = Thickness(model().W, transformed_.static_Bw);
     if (model().linear.is_uncertain() || is_rounded_) recursion_ = Tightness::outer;
     if (params.has("admissible_set")) {
       recursion_ = Tightness::outer;  // of the set only the part that E does not determine is used
@@ -121,7 +121,7 @@ class SemiExplicitObserver final : public Observer {
                                                  : effectiveness_.input(stacked_B_, before.u);
       const Vector sizes =
           effectiveness_.input_terms(stacked_B_, before.u) + disturbance_.cwiseAbs();
-      const RoundingRoom room(backend(), shift + disturbance_, sizes, disturbance_widths_);
+      const RoundingRoom room(backend(), shift + disturbance_, sizes, thickness_);
       if (room.is_needed()) terms.push_back(room.term());
       const Enclosure rounding =
           is_rounded_ && !keeps_states_ ? dynamic_rounding(before.u, open) : Enclosure{};
@@ -200,7 +200,7 @@ class SemiExplicitObserver final : public Observer {
     if (is_rounded_ && !form.static_exact) return with_rounded_rows(Z, f, entries, noise, u, open);
     const Vector sizes =
         effectiveness_.input_terms(form.static_B, u) + static_disturbance_.cwiseAbs();
-    const RoundingRoom room(backend(), f - static_disturbance_, sizes, static_widths_);
+    const RoundingRoom room(backend(), f - static_disturbance_, sizes, static_thickness_);
     return room.correct(Z, {form.static_A, f, {entries, noise}});
   }
 
@@ -246,9 +246,9 @@ class SemiExplicitObserver final : public Observer {
   LineForm X0_;
   Enclosure W_;
   Effectiveness effectiveness_;
-  Enclosure static_W_;                         ///< W × factors of inputs
-  Vector disturbance_, disturbance_widths_;    ///< center and half widths of Bw W, dynamic rows
-  Vector static_disturbance_, static_widths_;  ///< the same, static rows
+  Enclosure static_W_;                       ///< W × factors of inputs
+  Vector disturbance_, static_disturbance_;  ///< center of Bw W, dynamic and static rows
+  Thickness thickness_, static_thickness_;   ///< of the same
   Vector largest_w_, free_rounding_;  ///< magnitudes of W; what the rounding of T⁻¹ adds to z̃
   bool inputs_enter_as_sets_;         ///< B u and B̌ u are left to the backend
   Matrix stacked_A_, stacked_B_, stacked_Bw_, stacked_rows_, dynamic_rows_;

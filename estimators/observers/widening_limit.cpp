@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/tolerances.hpp"
 
 namespace cordon::estimators {
 
@@ -65,19 +66,27 @@ void WideningLimit::start(const LuenbergerRecursion& recursion, const Enclosure&
   errors_.emplace(recursion.error_map(), recursion.error_noise(), half);
 }
 
+/// By how much the next center is off, whose terms may cancel.
+Vector WideningLimit::rounding_of(const LuenbergerRecursion& recursion,
+                                  const Sample& before) const {
+  return tolerances::product_noise * recursion.next_size(center_, before);
+}
+
 void WideningLimit::step(const LuenbergerRecursion& recursion, const Sample& before,
                          const Vector& open) {
   if (!errors_) return;
+  const Vector rounding = rounding_of(recursion, before);
   center_ = recursion.next(center_, before);
-  errors_->step(open);
+  errors_->step(open.size() > 0 ? Vector(open + rounding) : rounding);
 }
 
 void WideningLimit::step_with_gap(const LuenbergerRecursion& recursion,
                                   const LuenbergerRecursion& others, const Sample& before,
                                   const Vector& open) {
   if (!errors_) return;
+  const Vector rounding = rounding_of(others, before);
   center_ = others.next(center_, before);
-  Vector h = others.error_map().cwiseAbs() * errors_->half_widths() +
+  Vector h = rounding + others.error_map().cwiseAbs() * errors_->half_widths() +
              absolute_row_sums(others.error_noise());
   if (open.size() > 0) h += open;
   errors_.emplace(recursion.error_map(), recursion.error_noise(), h * (1 + rounding_share));

@@ -64,6 +64,8 @@ class WideningLimit {
   Enclosure apply(const SetBackend& backend, const Enclosure& X, Box* hull = nullptr) const;
 
  private:
+  Vector rounding_of(const LuenbergerRecursion& recursion, const Sample& before) const;
+
   double limit_;
   std::optional<ErrorHull> errors_;
   Vector center_;

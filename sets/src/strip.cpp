@@ -60,8 +60,10 @@ bool intersect(Computed& X, VectorIn rho, Strip strip, StripMethod method) {
                highest = rounding::up(middle.upper + spread);
   const double lower = rounding::down(strip.d - strip.sigma),
                upper = rounding::up(strip.d + strip.sigma);
-  const double margin =
-      tolerances::proof_margin * (strip.terms + rho.cwiseAbs().dot(Z.c.cwiseAbs()) + spread);
+  Vector sizes;
+  take_reach(Z.c, Z.G, sizes);
+  const double seen = rho.cwiseAbs().dot(sizes);  // what cancels in ρᵀG included
+  const double margin = tolerances::proof_margin * (strip.terms + seen);
   if (lowest - upper > margin || lower - highest > margin) return false;
   if (lower <= lowest && highest <= upper) return true;
   double d = strip.d, sigma = strip.sigma;
@@ -77,9 +79,6 @@ bool intersect(Computed& X, VectorIn rho, Strip strip, StripMethod method) {
                                          : rounding::subtract({d, d}, middle);
   const double shift = difference.lower / 2 + difference.upper / 2;
   sigma += difference.upper / 2 - difference.lower / 2;
-  Vector sizes;
-  take_reach(Z.c, Z.G, sizes);
-  const double seen = rho.cwiseAbs().dot(sizes);
   sigma += rounding::gamma(Z.dim() + 1) * seen + rho.cwiseAbs().dot(X.noise);
   const Vector lambda = strip_gain(Z.G, rho, sigma, method);
   if (lambda.isZero(0) || !lambda.allFinite()) return true;

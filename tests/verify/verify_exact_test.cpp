@@ -346,3 +346,26 @@ TEST_CASE("what rows hide that say the same twice confirms nothing") {
     CHECK((outcome.code == 4 || outcome.code == 5));
   }
 }
+
+TEST_CASE("the noise of an output that falls on the state which is open is not held against it") {
+  // x_1 = -u/2 of the step before is known, so that y = -x_1/2 - x_2/2 + u + v tells x_2, of size
+  // 1e-7, by terms of size 1
+  const Run run(R"({"type": "lti", "A": [[0, 0], [0, -0.5]], "B": [[-0.5], [0]],
+      "C": [[-0.5, -0.5]], "D": [[1]],
+      "X0": {"type": "box", "lower": [-4.799918719223269e-07, 1.643119043667908e-07],
+             "upper": [-4.799898719223268e-07, 1.643139043667908e-07]},
+      "W": {"type": "box", "lower": [0, 0], "upper": [0, 0]},
+      "V": {"type": "box", "lower": [-9.99999967826886e-10],
+            "upper": [1.0000000194468548e-09]}})",
+                R"({"csv": {"file": "data.csv", "inputs": ["u0"], "outputs": ["y0"]}})",
+                R"({"name": "P", "backend": "constrained_zonotope", "observer": "descriptor"})",
+                "u0,y0\n-3.8983042907548214e-07,-2.319914452977141e-07\n"
+                "-0.937600610636339,-0.9376006680157202\n"
+                "7.986894211771546e-07,-0.23439937350877663\n"
+                "0.7574714704382428,0.7574716803801547\n"
+                "0.21165109382255376,0.4010189572973362\n"
+                "0.7283714954120935,0.781284270435121\n");
+  const Outcome outcome = run.verify();
+  CAPTURE(outcome.out);
+  CHECK(outcome.code == 0);
+}

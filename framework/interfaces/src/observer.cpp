@@ -80,6 +80,16 @@ double row_support(const Set& X, Vector c, const Vector& radius, const Box& hull
   return most + spread;
 }
 
+/// Σ |c_j| max |x_j| over x in the hull, without coordinates that have no bounds.
+double finite_terms(const Box& hull, const Vector& c) {
+  double sum = 0;
+  for (Index j = 0; j < c.size(); ++j) {
+    const double most = std::max(std::abs(hull.lower[j]), std::abs(hull.upper[j]));
+    if (c[j] != 0 && std::isfinite(most)) sum += std::abs(c[j]) * most;
+  }
+  return sum;
+}
+
 }  // namespace
 
 Observer::Stopwatch::Stopwatch(double& total) : total_(total), begin_(now_ns()) {}
@@ -183,8 +193,11 @@ std::vector<Index> Observer::outliers(const Set& X, const Sample& now) {
     const double upper = direct + row_support(X, c, radius, hull) + noise_->support(v),
                  lower = direct - row_support(X, -c, radius, hull) - noise_->support(-v);
     const double distance = std::max(y - upper, lower - y);  // NaN: open on both sides
-    const double size = std::max({std::abs(y), std::abs(direct), std::isfinite(upper) ? upper : 0,
-                                  std::isfinite(lower) ? -lower : 0});
+    // what cancels in D u and C x included
+    double size = std::max({std::abs(y), m.D.row(i).cwiseAbs().dot(now.u.cwiseAbs()),
+                            std::isfinite(upper) ? upper : 0, std::isfinite(lower) ? -lower : 0});
+    if (!(distance > tolerances::reported * size)) continue;
+    size += finite_terms(X.interval_hull(), c);
     if (!(distance > tolerances::reported * size)) continue;
     found.push_back(i);
     const double share = distance / std::max(upper - lower, tolerances::reported * size);

@@ -75,6 +75,28 @@ Vector RoundingMargin::cut_lines(const Vector& data, const Sample& now) const {
   return operations * (dynamic_ * (moved.cwiseAbs() * lengths));
 }
 
+/// What rounding of an output leaves open of each state, were it a share of 1 of the data: falls on
+/// the state that the output shows most of, and on others as far as the set leaves them open, for
+/// the first may be known by other means.
+Vector RoundingMargin::of_outputs(const LineForm& X, const Vector& data) const {
+  const Index n = model_.C.cols();
+  Vector sizes = Vector::Zero(n), widths = X.G.cwiseAbs().rowwise().sum();
+  for (Index i = 0; i < n && X.lines() > 0; ++i) {
+    if (!X.M.row(i).isZero(0)) widths[i] = infinity;
+  }
+  for (Index j = 0; j < data.size(); ++j) {
+    Index most = 0;
+    if (!(model_.C.row(j).cwiseAbs().maxCoeff(&most) > 0)) continue;
+    for (Index i = 0; i < n; ++i) {
+      const double coefficient = std::abs(model_.C(j, i));
+      if (!(coefficient > 0)) continue;
+      const double size = data[j] / coefficient;
+      sizes[i] = std::max(sizes[i], i == most ? size : std::min(size, widths[i] / of_the_data_));
+    }
+  }
+  return sizes;
+}
+
 Vector RoundingMargin::next(const LineForm& X, const Sample* before, const Sample& now) {
   const Matrix A = model_.A.cwiseAbs();
   Vector terms = reach_of(X);
@@ -94,12 +116,7 @@ Vector RoundingMargin::next(const LineForm& X, const Sample* before, const Sampl
   largest_ = largest_.cwiseMax(terms);
   error_ += of_a_step_ * terms;
   of_outputs_ = of_operations * (data + model_.C.cwiseAbs() * (terms + along_lines(X, terms)));
-  Vector from_outputs = Vector::Zero(terms.size());
-  for (Index j = 0; j < data.size(); ++j) {
-    Index i = 0;
-    const double coefficient = model_.C.row(j).cwiseAbs().maxCoeff(&i);
-    if (coefficient > 0) from_outputs[i] = std::max(from_outputs[i], data[j] / coefficient);
-  }
+  const Vector from_outputs = of_outputs(X, data);
   error_ += of_the_data_ * from_outputs;
   largest_ = largest_.cwiseMax(from_outputs);
   return error_.cwiseMin(of_all * largest_).unaryExpr([](double x) {

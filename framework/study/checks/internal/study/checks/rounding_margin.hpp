@@ -37,6 +37,7 @@ class RoundingMargin {
  private:
   Vector forces(VectorIn u) const;
   Vector cut_lines(const Vector& data, const Sample& now) const;
+  Vector of_outputs(const LineForm& X, const Vector& data) const;
 
   const LinearModel& model_;
   double of_a_step_, of_the_data_;  ///< ε, ε_t
