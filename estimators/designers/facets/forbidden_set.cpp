@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "cordon/core/linalg.hpp"
@@ -25,6 +26,8 @@ constexpr double outer_rounding =
 constexpr double inner_rounding = row_noise;  ///< of the terms, see forbidden_set
 constexpr double point_accuracy = 1e-13;      ///< of the terms
 constexpr double residual_tolerance = 1e-11;  ///< of the terms
+/// Of the terms: by how much rows are moved to see whether Q has a point all the same.
+constexpr double most_room = 0.5, least_room = 1e-13;
 
 /// The rows of a pair by powers of two at the size of their terms, so that 1 is the size of
 /// everything, in the factors ζ of U.
@@ -51,13 +54,17 @@ struct ScaledPair {
   }
 };
 
+/// What is small beside its terms is computed with more digits.
+using Long = long double;
+using LongMatrix = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
+
 /// The support function of Q by certified linear programs.
 class Support {
  public:
   struct Answer {
     Vector y;                 ///< on the scaled rows
     double level = 0;         ///< h_Q(d) ≤ level
-    std::optional<Vector> x;  ///< a point of Q that attains it up to rounding
+    std::optional<Vector> x;  ///< a point near Q that attains it: see `loss_along`
   };
 
   Support(const ScaledPair& pair, Matrix R, Matrix L, Vector centre)
@@ -84,6 +91,29 @@ class Support {
     return BoxedProgram(rows_, right_, {product(shares, pair_.terms), product(shares, error)})
                .is_empty() == cordon::Answer::no;
   }
+  /// Finds how far the rows' right-hand sides may be moved, by their terms, before Q is empty.
+  /// False: not even by up to `effect`, and by rounding. `inputs` (N Z) tell what they do there.
+  bool find_room(const Vector& effect, const Matrix& inputs) {
+    const Matrix shares = L_.cwiseAbs().transpose();
+    const Index operations = 2 * (pair_.G.rows() + pair_.G.cols() + inputs.cols()) + 8;
+    const double rounding =
+        static_cast<double>(operations) * static_cast<double>(std::numeric_limits<Long>::epsilon());
+    const LongMatrix by_inputs = L_.cast<Long>().transpose() * inputs.cast<Long>();
+    moved_ = (1 + row_noise) * by_inputs.cwiseAbs().rowwise().sum().cast<double>() +
+             rounding * product(shares, pair_.terms);
+    room_ = Vector::Zero(moved_.size());
+    for (double share = most_room; share > least_room; share *= share > 1e-3 ? 0.5 : 0.1) {
+      const Vector room = share * pair_.terms;
+      if (!is_met_within(effect + room)) continue;
+      room_ = product(shares, room);
+      return true;
+    }
+    return is_met_within(effect);
+  }
+  /// How far the support of Q along d may lie below that of the points so far. Each satisfies rows
+  /// that are moved by r, its residual and what is unknown of the rows; Q has a point z where they
+  /// are moved by -r (1 - λ) / λ, as far as there is room; so that (1 - λ) x + λ z lies in Q.
+  double loss_along(const Vector& d) const { return 2 * lambda_ * terms_along(d); }
   double terms_along(const Vector& d) const {
     return pair_.terms.dot(Vector(product(R_, d)).cwiseAbs());
   }
@@ -103,12 +133,20 @@ class Support {
 
  private:
   /// RᵀGξ + Rᵀc for a basic solution that satisfies the rows.
-  std::optional<Vector> point(Vector xi) const {
+  std::optional<Vector> point(Vector xi) {
     const Vector inside = xi.cwiseMax(-1.0).cwiseMin(1.0);
     if (!inside.allFinite()) return std::nullopt;
     const Vector residual = (product(rows_, inside) - right_).cwiseAbs();
     const Vector allowed = residual_tolerance * product(L_.cwiseAbs().transpose(), pair_.terms);
     if (residual.size() && (residual - allowed).maxCoeff() > 0) return std::nullopt;
+    const LongMatrix reached = pair_.G.cast<Long>() * inside.cast<Long>() +
+                               c_.cast<Long>() / static_cast<Long>(pair_.factor);
+    const LongMatrix exactly = L_.cast<Long>().transpose() * reached;
+    for (Index i = 0; i < residual.size(); ++i) {
+      const double moved =
+          (1 + row_noise) * std::abs(static_cast<double>(exactly(i, 0))) + moved_[i];
+      if (moved > 0) lambda_ = std::max(lambda_, room_[i] > 0 ? moved / (moved + room_[i]) : 1.0);
+    }
     return Vector(pair_.factor * product(seen_, inside) + transposed_product(R_, c_));
   }
 
@@ -118,6 +156,8 @@ class Support {
   Matrix seen_, rows_;
   Vector right_;
   BoxedProgram program_;
+  Vector room_, moved_;  ///< per row
+  double lambda_ = 0;    ///< the largest of all points
 };
 
 /// The half-space of ζ that multipliers y on the scaled rows prove.
@@ -249,8 +289,9 @@ class Builder {
       return false;
     }
     for (const GrowingHull::Facet& facet : hull.facets()) {
+      const double loss = support_.loss_along(product(basis, facet.h.normalized()));
       set_.facets.push_back(
-          facet_of(pair_, facet.proof, 0, std::max(0.0, facet.proven - hull.level(facet))));
+          facet_of(pair_, facet.proof, 0, std::max(0.0, facet.proven - hull.level(facet)) + loss));
     }
     return true;
   }
@@ -298,7 +339,8 @@ ForbiddenSet forbidden_set(const PairProgram& pair, const InputSequences& U, dou
   } else if (r > 0) {
     const Matrix seen = parts.U.leftCols(r) * parts.sigma.head(r).asDiagonal();
     const Matrix unseen = product(scaled.N, Z) - product(seen, parts.V.leftCols(r).transpose());
-    set = pair.vanished == 0 && support.is_met_within(unseen.cwiseAbs().rowwise().sum())
+    set = pair.vanished == 0 &&
+                  support.find_room(unseen.cwiseAbs().rowwise().sum(), product(scaled.N, Z))
               ? Builder(scaled, support, r, max_facets, watch).build()
               : of_kind(ForbiddenSet::Kind::unknown,
                         "whether outputs on which the inputs have no effect tell them apart is a "
