@@ -230,3 +230,32 @@ TEST_CASE("rows that nearly depend on each other do not make a volume that is no
     }
   }
 }
+
+TEST_CASE("a factor that a row lets barely move makes no volume of a larger set") {
+  // ξ₁ + b ξ₂ + a ξ₃ = 1 + a (1 + δ) - b: ξ₂ is no less than a δ / b - 1, where a solver that
+  // passes over a δ finds -1
+  const Plugins plugins;
+  for (const auto& [a, b] :
+       {std::pair(.01, 1e-6), std::pair(0x1p-7, 0x1p-34), std::pair(.01, .001)}) {
+    for (const double delta : {1e-11, 1e-10, 8e-10, 1e-9}) {
+      for (const Index n : {1, 2, 3}) {
+        LineForm X{Matrix(n, 0), Matrix::Zero(n, n + 2), Vector::Zero(n),
+                   Matrix(1, 0), Matrix::Zero(1, n + 2), Vector{{1 + a * (1 + delta) - b}}};
+        X.G(0, 1) = 1;
+        for (Index i = 1; i < n; ++i) X.G(i, i + 2) = 1;
+        X.A(0, 0) = 1;
+        X.A(0, 1) = b;
+        X.A(0, 2) = a;
+        const double share = std::max(0.0, X.b[0] - 1 - a + b) / b;  // of the length 2 of ξ₂
+        const double truth = (2 - share) * std::ldexp(1., static_cast<int>(n) - 1);
+        for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
+          CAPTURE(a);
+          CAPTURE(delta);
+          CAPTURE(n);
+          const auto found = plugins.backend(name)->import(X)->volume();
+          if (found.exact) CHECK(found.value == doctest::Approx(truth).epsilon(1.1e-7));
+        }
+      }
+    }
+  }
+}

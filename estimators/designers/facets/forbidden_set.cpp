@@ -102,7 +102,7 @@ class Support {
     moved_ = (1 + row_noise) * by_inputs.cwiseAbs().rowwise().sum().cast<double>() +
              rounding * product(shares, pair_.terms);
     room_ = Vector::Zero(moved_.size());
-    for (double share = most_room; share > least_room; share *= share > 1e-3 ? 0.5 : 0.1) {
+    for (double share = most_room; share > least_room; share /= 2) {
       const Vector room = share * pair_.terms;
       if (!is_met_within(effect + room)) continue;
       room_ = product(shares, room);
