@@ -41,7 +41,27 @@ std::string describe_system(const Study& study) {
                      faults, sampled);
 }
 
-std::string describe_data(const Study& study) {
+constexpr std::int64_t most_samples = 1'000'000, most_simulated = 10'000;  // that are looked at
+
+/// ": 241 samples over 1200 s; gauge 1 is missing in 12, nothing is there in 3".
+std::string describe_samples(const Study& study, const DataOverview& data) {
+  const Labels& labels = study.labels;
+  std::string text =
+      fmt::format(": {}{}", data.is_whole ? "" : "more than ", count(data.samples, "sample"));
+  if (data.is_whole && labels.sampling_time > 0)
+    text += fmt::format(" over {:.6g} s", static_cast<double>(data.last) * labels.sampling_time);
+  std::string gaps;
+  const auto add = [&](const std::string& what, std::int64_t times) {
+    if (times > 0) gaps += fmt::format("{}{} in {}", gaps.empty() ? "; " : ", ", what, times);
+  };
+  for (std::size_t i = 0; i < data.missing.size(); ++i)
+    add(label_of(labels.outputs, "y", static_cast<Index>(i)) + " is missing",
+        data.missing[i] - data.empty);
+  add("all outputs are missing", data.empty);
+  return text + gaps;
+}
+
+std::string describe_data(const Study& study, const DataOverview& data) {
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
     const std::string by = simulate->plant ? " by " + simulate->plant->type : "";
     const std::uint64_t first = simulate->seed,
@@ -54,7 +74,7 @@ std::string describe_data(const Study& study) {
     if (designed) return "experiments with every mode and the designed inputs, " + seeds;
     return fmt::format("simulated{}, {}, {}", by, count(simulate->steps, "step"), seeds);
   }
-  return "recorded, " + std::get<CsvSpec>(study.data).file.string();
+  return "recorded, " + std::get<CsvSpec>(study.data).file.string() + describe_samples(study, data);
 }
 
 /// "weak from k = 3 to 5"; the last one may have no end.
@@ -141,11 +161,11 @@ std::string describe_sweep(const Study& study) {
              : fmt::format("  sweep     {}\n  points    {}\n", fmt::join(axes, "; "), points);
 }
 
-std::string describe(const Study& study) {
+std::string describe(const Study& study, const DataOverview& data) {
   const Paint paint(stdout);
-  std::string text =
-      fmt::format("{}: {}\n  title     {}\n  system    {}\n  data      {}\n", study.file.string(),
-                  paint.green("ok"), study.title, describe_system(study), describe_data(study));
+  std::string text = fmt::format("{}: {}\n  title     {}\n  system    {}\n  data      {}\n",
+                                 study.file.string(), paint.green("ok"), study.title,
+                                 describe_system(study), describe_data(study, data));
   text += describe_modes(study);
   const char* label = "pipelines";
   for (const PipelineSpec& pipeline : study.pipelines) {
@@ -159,10 +179,10 @@ std::string describe(const Study& study) {
   return text + describe_sweep(study);
 }
 
-Json as_json(const Study& study) {
+Json as_json(const Study& study, const std::vector<std::string>& warnings) {
   Json entry{{"file", study.file.string()},
              {"valid", true},
-             {"warnings", study.warnings},
+             {"warnings", warnings},
              {"errors", Json::array()}};
   entry["study"] = Json::parse(study.resolved);
   return entry;
@@ -204,6 +224,31 @@ std::vector<std::exception_ptr> wrong_data(const Study& study, const Registry& r
   return errors;
 }
 
+/// Of data that nobody needs: nothing.
+DataOverview overview_of(const Study& study) {
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  if (simulate && simulate->steps == 0) return {};  // of designers alone
+  return overview_of_data(study, simulate ? most_simulated : most_samples);
+}
+
+/// Inputs that are known already to break an assumption.
+std::vector<std::string> warnings_of(const Study& study, const DataOverview& data) {
+  std::vector<std::string> all = study.warnings;
+  if (!data.unused_time.empty()) {
+    all.push_back(fmt::format(
+        "the column \"{}\" of the data is not used: \"time\": \"{}\" in /data/csv would check "
+        "that its rows are the steps",
+        data.unused_time, data.unused_time));
+  }
+  if (data.outside_U == 0) return all;
+  all.push_back(fmt::format(
+      "{} of {}{} have inputs outside /system/U, the first at {}; what is promised in advance "
+      "rests on U: widen it, or choose other inputs",
+      data.outside_U, data.is_whole ? "" : "the first ", count(data.samples, "sample"),
+      time_text(study.labels, data.first_outside_U)));
+  return all;
+}
+
 /// Tells every error, as a text or in an entry for programs; the exit code is that of the first.
 Exit refuse(const std::string& file, const std::vector<std::exception_ptr>& wrong, Json* entries) {
   std::optional<Exit> exit;
@@ -233,11 +278,13 @@ Exit validate_one(const std::string& file, const Program& program, Json* entries
     const Study study = read_study(file, registry, default_search_path(), plugins);
     if (const auto wrong = wrong_data(study, registry); !wrong.empty())
       return refuse(file, wrong, entries);
+    const DataOverview data = overview_of(study);
+    const std::vector<std::string> warnings = warnings_of(study, data);
     if (entries) {
-      entries->push_back(as_json(study));
+      entries->push_back(as_json(study, warnings));
     } else {
-      for (const std::string& warning : study.warnings) warn(warning);
-      print(describe(study));
+      for (const std::string& warning : warnings) warn(warning);
+      print(describe(study, data));
     }
     return Exit::done;
   } catch (const Error&) {

@@ -34,4 +34,20 @@ class DataSource {
 /// (CSV problems with their lines; an inconsistent x0).
 std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_offset = 0);
 
+/// What the data are like, before anything runs on them.
+struct DataOverview {
+  std::int64_t samples = 0;
+  bool is_whole = true;                    ///< false: there are more
+  Index last = 0;                          ///< k of the last one
+  std::int64_t empty = 0;                  ///< samples without any output
+  std::vector<std::int64_t> missing = {};  ///< per output: samples that lack it
+  std::int64_t outside_U = 0;              ///< samples whose input is proven to lie outside U
+  Index first_outside_U = -1;              ///< k
+  /// Column of a CSV file that nothing uses, and whose name is one of times; empty: none.
+  std::string unused_time = {};
+};
+
+/// Reads the data up to `most` samples. Throws as `open_data` does.
+DataOverview overview_of_data(const Study& study, std::int64_t most);
+
 }  // namespace cordon
