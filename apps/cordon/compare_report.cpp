@@ -110,10 +110,11 @@ std::string closing_text(const Sorted& found) {
 constexpr const char* explanation =
     "Ratios in verdicts are medians over all pairs of measurements, with intervals at the "
     "confidence of the verdict; p of\n"
-    "Mann–Whitney tests, two-sided, adjusted for their number in the table (Holm). That times "
-    "differ does not say why: the load "
-    "of the machine moves all times of a run.\n"
-    "Repeat the runs in turn before you put it down to the programs.\n";
+    "Mann–Whitney tests that times differ by more than 15 %, adjusted for their number in the "
+    "table "
+    "(Holm): runs of one program\n"
+    "do so too on a machine with other load. Repeat them in turn before you put it down to the "
+    "programs.\n";
 
 bool any_test(const Comparison& comparison) {
   for (const ComparedMeasure& measure : comparison.measures) {

@@ -179,6 +179,25 @@ TEST_CASE("times that overlap are not significant, and their interval holds 1") 
             .find("not significant, × 1.03 [0.9") == 0);
 }
 
+TEST_CASE("what one program differs by from run to run is no difference, however clear it is") {
+  for (const double factor : {1.1, 1 / 1.1, 1.3, 1 / 1.3}) {
+    CAPTURE(factor);
+    Sweep sweep, other;
+    sweep.seeds = other.seeds = 50;
+    sweep.time = other.time = 1000;  // seeds differ by 5 % at most
+    other.factor = factor;
+    const Comparison found = compared(sweep, other);
+    const ComparedRow& row = measure(found, "step_us").rows[0];
+    const TimeTest& test = row.runs[1].test.value();
+    const bool is_beyond = factor > machine_noise || factor < 1 / machine_noise;
+    CHECK(test.significant() == is_beyond);
+    CHECK((test.lower > machine_noise || test.upper < 1 / machine_noise) == is_beyond);
+    CHECK(test.ratio == doctest::Approx(factor).epsilon(.01));
+    const std::string verdict = apps::verdict_of({"step_us", true}, row.runs[0], row.runs[1]);
+    CHECK(verdict.find(!is_beyond ? "not significant" : factor > 1 ? "slower" : "faster") == 0);
+  }
+}
+
 TEST_CASE("the time of a whole pipeline is shown where it designs") {
   Sweep sweep;
   sweep.with_wall = true;

@@ -134,10 +134,6 @@ TEST_CASE("a run is read as it was written") {
   const detail::RecordedTable recorded = detail::read_recorded_table(scratch.path());
   CHECK(recorded.abi_tag.find("headers=") != std::string::npos);
   CHECK(!recorded.host.empty());
-  REQUIRE(recorded.step_us.size() == 4);
-  CHECK(recorded.step_us[0].size() == 21);
-  CHECK(recorded.step_us[2].size() == 21);
-  CHECK(recorded.step_us[3].empty());
 }
 
 TEST_CASE("a sweep is read as it was written, however it is laid out") {
@@ -293,8 +289,7 @@ TEST_CASE("runs that do not fit together, or were made before there were numbers
   const auto reading = [&](const Json& first, const Json& second) -> std::string {
     write_sweep(scratch.path(), {first, second});
     try {
-      const detail::RecordedTable recorded = detail::read_recorded_table(scratch.path());
-      CHECK(recorded.step_us == std::vector<std::vector<double>>{{7}, {7}});
+      detail::read_recorded_table(scratch.path());
     } catch (const InputError& error) {
       return error.what();
     }

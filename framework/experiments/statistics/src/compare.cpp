@@ -76,14 +76,6 @@ struct Run {
     }
     return found;
   }
-
-  /// Times of the steps of a single run.
-  const std::vector<double>* steps(const Key& key, const std::string& column) const {
-    const auto pipeline = pipelines.find(key.front());
-    const bool known = column == "step_us" && pipeline != pipelines.end() &&
-                       pipeline->second < recorded.step_us.size();
-    return known ? &recorded.step_us[pipeline->second] : nullptr;
-  }
 };
 
 /// One number at the points that two runs share.
@@ -172,7 +164,7 @@ ComparedMeasure measure_of(const std::vector<Run>& runs, const std::vector<Key>&
 }
 
 /// The measurements of one number in the first run and in another one: at the points that failed in
-/// neither, or of single runs their steps.
+/// neither.
 struct Samples {
   ComparedNumber* number;
   std::vector<double> first, other;
@@ -186,16 +178,20 @@ std::vector<Samples> samples_of(const std::vector<Run>& runs, ComparedMeasure& m
     for (std::size_t i = 1; i < runs.size(); ++i) {
       Shared shared = shared_points(runs[0], runs[i], key, measure.column.name);
       Samples one{&row.runs[i], std::move(shared.first), std::move(shared.other)};
-      const auto *first = runs[0].steps(key, measure.column.name),
-                 *other = runs[i].steps(key, measure.column.name);
-      if (first && other) {
-        one.first = *first;
-        one.other = *other;
-      }
       if (one.first.size() >= 2 && one.other.size() >= 2) samples.push_back(std::move(one));
     }
   }
   return samples;
+}
+
+/// How likely measurements are that differ by more than the noise of machines, whichever is slower,
+/// where they do not.
+double beyond_noise(const std::vector<double>& first, const std::vector<double>& other,
+                    double ratio) {
+  if (!(ratio > machine_noise) && !(ratio < 1 / machine_noise)) return 1;
+  std::vector<double> nearer = first;
+  for (double& time : nearer) time *= ratio > 1 ? machine_noise : 1 / machine_noise;
+  return detail::mann_whitney_p(nearer, other);
 }
 
 /// All tests of a measure are judged together: each measure answers a question of its own, and most
@@ -205,7 +201,8 @@ void add_tests(const std::vector<Run>& runs, ComparedMeasure& measure) {
   constexpr double level = .05;
   const std::vector<Samples> samples = samples_of(runs, measure);
   std::vector<double> p;
-  for (const Samples& one : samples) p.push_back(detail::mann_whitney_p(one.first, one.other));
+  for (const auto& [number, first, other] : samples)
+    p.push_back(beyond_noise(first, other, detail::median_ratio(first, other, level).ratio));
   const std::vector<double> adjusted = detail::holm(p), levels = detail::holm_levels(p, level);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto& [number, first, other] = samples[i];
@@ -219,8 +216,9 @@ void add_tests(const std::vector<Run>& runs, ComparedMeasure& measure) {
                   upper,
                   adjusted[i],
                   least};
-    // Ties at 1, or order statistics in place of all numbers, can bring them apart.
-    if (test.significant() == (lower <= 1 && 1 <= upper)) test.lower = test.upper = not_available;
+    // Ties at the limits, or order statistics in place of all numbers, can bring them apart.
+    if (test.significant() == (lower <= machine_noise && 1 / machine_noise <= upper))
+      test.lower = test.upper = not_available;
     number->test = test;
   }
 }
@@ -254,11 +252,11 @@ std::vector<std::string> warnings_of(const std::vector<Run>& runs, const std::ve
              (other.abi_tag != first.abi_tag || other.tools != first.tools),
          "different builds of one version");
   }
-  if (!first.step_us.empty()) {
+  if (first.table.axes.empty()) {
     warnings.emplace_back(
-        "single runs: steps of one run depend on each other; repeat the runs, by a sweep over "
-        "seeds, for firm statements about "
-        "times");
+        "single runs: one time of each says nothing about the programs; repeat the runs, by a "
+        "sweep "
+        "over seeds");
   }
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto& rows = runs[i].recorded.table.rows;

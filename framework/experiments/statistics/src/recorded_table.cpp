@@ -59,24 +59,6 @@ std::string read_failure(const Cursor& object) {
   return !at || at->is(Kind::null) ? "" : read_text(*at, longest_error).value_or("");
 }
 
-/// Keeps every sample, then every second one, and so on.
-class Thinned {
- public:
-  void add(double sample) {
-    if (seen_++ % stride_ != 0) return;
-    kept_.push_back(sample);
-    if (kept_.size() < most_samples) return;
-    for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
-    kept_.resize((kept_.size() + 1) / 2);
-    stride_ *= 2;
-  }
-  std::vector<double> take() { return std::move(kept_); }
-
- private:
-  std::vector<double> kept_;
-  std::size_t seen_ = 0, stride_ = 1;
-};
-
 class TableReader {
  public:
   explicit TableReader(const std::filesystem::path& directory)
@@ -99,9 +81,8 @@ class TableReader {
   void check_rows(const Cursor& root);
   void read_times();
   void read_host(const Cursor& root);
-  void read_times_of_pipelines(const Cursor& root, std::vector<Thinned>& steps);
+  void read_times_of_pipelines(const Cursor& root);
   void read_times_of_point(const Cursor& at);
-  void read_times_of_step(const Cursor& at, Thinned& steps);
 
   RecordedFiles files_;
   RecordedTable read_;
@@ -228,16 +209,10 @@ void TableReader::check_rows(const Cursor& root) {
 void TableReader::read_times() {
   const std::filesystem::path file = files_.file("run.json");
   Problems problems;
-  std::vector<Thinned> steps(read_.table.pipelines.size());
-  const Wanted wanted{{"/cordon_run", "/host", "/pipelines/*/name", "/pipelines/*/summary/numbers"},
-                      {"/points/*", "/pipelines/*/steps/*"},
-                      [&](const Cursor& at, const std::vector<std::size_t>& place) {
-                        if (place.size() == 1) {
-                          read_times_of_point(at);
-                        } else if (place[0] < steps.size()) {
-                          read_times_of_step(at, steps[place[0]]);
-                        }
-                      }};
+  const Wanted wanted{
+      {"/cordon_run", "/host", "/pipelines/*/name", "/pipelines/*/summary/numbers"},
+      {"/points/*"},
+      [&](const Cursor& at, const std::vector<std::size_t>&) { read_times_of_point(at); }};
   const Value tree = read_large(file, wanted, problems).tree;
   const Cursor root(tree, "", problems);
   if (root.expect(Kind::object, not_as_written)) {
@@ -246,7 +221,7 @@ void TableReader::read_times() {
       if (timed_ != points_.size() && !problems.any())
         root.error("does not have the points of results.json", "both files must be of one sweep");
     } else {
-      read_times_of_pipelines(root, steps);
+      read_times_of_pipelines(root);
     }
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());
@@ -261,7 +236,7 @@ void TableReader::read_host(const Cursor& root) {
   }
 }
 
-void TableReader::read_times_of_pipelines(const Cursor& root, std::vector<Thinned>& steps) {
+void TableReader::read_times_of_pipelines(const Cursor& root) {
   const auto pipelines = root.need("pipelines", not_as_written);
   if (!pipelines || !pipelines->expect(Kind::array, not_as_written)) return;
   if (pipelines->size() != read_.table.pipelines.size()) {
@@ -279,7 +254,6 @@ void TableReader::read_times_of_pipelines(const Cursor& root, std::vector<Thinne
                              ? summary->need("numbers", not_as_written)
                              : std::nullopt;
     if (numbers) builder_.extend(i, read_numbers(*numbers, true));
-    read_.step_us.push_back(steps[i].take());
   }
 }
 
@@ -292,22 +266,6 @@ void TableReader::read_times_of_point(const Cursor& at) {
     return;
   }
   builder_.extend(timed_++, read_numbers(*numbers, true));
-}
-
-/// Of an observer predict, correct and reduce; of a diagnoser the whole step.
-void TableReader::read_times_of_step(const Cursor& at, Thinned& steps) {
-  if (!at.expect(Kind::object, not_as_written)) return;
-  if (const auto whole = at.find("step_us")) {
-    if (const auto time = read_number(*whole)) steps.add(*time);
-    return;
-  }
-  const auto times = at.find("time_us");
-  if (!times || !times->expect(Kind::object, not_as_written)) return;
-  double sum = 0;
-  for (const char* phase : {"predict", "correct", "reduce"}) {
-    if (const auto part = times->need(phase, not_as_written)) sum += read_number(*part).value_or(0);
-  }
-  steps.add(sum);
 }
 
 }  // namespace

@@ -17,13 +17,17 @@ struct ComparedRun {
   std::string directory, version, study_hash, host;
 };
 
-/// Measured times of a run beside those of the first run: over repetitions, or over the steps of
-/// single runs.
+/// Times of one program on one machine differ by as much, whatever the repetitions tell: the load,
+/// the clock and the place in memory of a process move all of them together.
+inline constexpr double machine_noise = 1.15;
+
+/// Measured times of a run beside those of the first run, over repetitions: do they differ by more
+/// than the noise of machines?
 struct TimeTest {
   std::int64_t first = 0, other = 0;  ///< numbers of measurements
   double ratio = 0, lower = 0,
-         upper = 0;  ///< median ratio to the first run, with an interval that leaves 1 out exactly
-                     ///< if `significant`, at the confidence that takes; NaN: there is none
+         upper = 0;  ///< median ratio to the first run, with an interval that lies beyond the
+                     ///< noise exactly if `significant`, at the confidence that takes; NaN: none
   double p = 1;  ///< Mann–Whitney, two-sided, adjusted (Holm) for all tests of the same measure
   double least = 1;  ///< the smallest p that as many measurements can have, if all tests of the
                      ///< measure are as clear

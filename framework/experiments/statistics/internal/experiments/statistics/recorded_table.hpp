@@ -13,9 +13,6 @@ struct RecordedTable {
   std::string abi_tag;
   std::map<std::string, std::string> tools;  ///< versions of what the program was built with
   std::string host, processor;
-  /// Of single runs, per pipeline: times of its steps in microseconds. Of very many steps every
-  /// 2nd, 4th, … is kept.
-  std::vector<std::vector<double>> step_us;
 };
 
 /// Reads results.json and run.json of a directory. Memory does not depend on the number of steps.
