@@ -12,7 +12,8 @@ namespace {
 using nlohmann::ordered_json;
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr Index most_states = 8;
+constexpr Index most_states = 8;  // beside each other
+constexpr Index most_rows = 30;
 constexpr std::size_t longest_matrix = 60;
 
 std::string titled(const std::string& title, const Rows& rows, const Paint& paint) {
@@ -148,18 +149,39 @@ std::string gains_text(const NamedGains& all, const Paint& paint) {
 }
 
 std::string widths_text(const RunOutcome& outcome, const Labels& labels, const Paint& paint) {
-  Rows rows{{"PIPELINE"}};
+  std::vector<const PipelineOutcome*> shown;
+  Index states = 0;
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    const Box& hull = pipeline.estimation()->last_hull;
-    if (hull.dim() == 0 || hull.dim() > most_states) continue;
-    for (Index i = static_cast<Index>(rows[0].size()); i <= hull.dim(); ++i)
-      rows[0].push_back(state_name(labels, i - 1));
-    rows.push_back({pipeline.name});
-    for (Index i = 0; i < hull.dim(); ++i) {
-      rows.back().push_back(hull.is_empty() ? "empty" : width_text(hull.upper[i] - hull.lower[i]));
+    const Index n = pipeline.estimation()->last_hull.dim();
+    states = std::max(states, n);
+    if (n > 0) shown.push_back(&pipeline);
+  }
+  const bool across = states <= most_states;  // a row per pipeline, else one per state
+  const Index listed = across ? states : std::min(states, most_rows);
+  Rows rows{{across ? "PIPELINE" : "STATE"}};
+  for (Index i = 0; i < listed; ++i) {
+    if (across) {
+      rows[0].push_back(state_name(labels, i));
+    } else {
+      rows.push_back({state_name(labels, i)});
     }
   }
-  return titled("Widths at the last step", rows, paint);
+  for (const PipelineOutcome* pipeline : shown) {
+    const Box& hull = pipeline->estimation()->last_hull;
+    auto& own = across ? rows.emplace_back() : rows[0];
+    own.push_back(pipeline->name);
+    for (Index i = 0; i < std::min(listed, hull.dim()); ++i) {
+      const std::string width =
+          hull.is_empty() ? "empty" : width_text(hull.upper[i] - hull.lower[i]);
+      (across ? own : rows[static_cast<std::size_t>(i) + 1]).push_back(width);
+    }
+  }
+  std::string text = titled("Widths at the last step", rows, paint);
+  if (listed < states && !shown.empty()) {
+    text.pop_back();
+    text += fmt::format("… and {} more states, in steps.csv\n\n", states - listed);
+  }
+  return text;
 }
 
 std::string inner_text(const RunOutcome& outcome, const Labels& labels, const Paint& paint) {

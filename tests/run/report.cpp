@@ -310,7 +310,13 @@ TEST_CASE(
   plain.last_hull = offers.last_hull = {-Vector::Ones(8), Vector::Ones(8)};
   CHECK(has(apps::report_text(study(), outcome, "out"), "x8\n"));
   plain.last_hull = offers.last_hull = {-Vector::Ones(9), Vector::Ones(9)};
-  CHECK_FALSE(has(apps::report_text(study(), outcome, "out"), "Widths"));
+  text = apps::report_text(study(), outcome, "out");
+  CHECK(has(text, "STATE  plain     offers\nx1     2.000000  2.000000\n"));
+  CHECK(has(text, "x9     2.000000  2.000000\n\n"));
+  plain.last_hull = {-Vector::Ones(32), Vector::Ones(32)};
+  offers.last_hull = Box::empty(32);
+  text = apps::report_text(study(), outcome, "out");
+  CHECK(has(text, "x30    2.000000  empty\n… and 2 more states, in steps.csv\n\n"));
 }
 
 TEST_CASE("an inner estimate outside the hull is a violated guarantee") {
