@@ -79,7 +79,7 @@ LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L,
   if (has_spread(m.C_radius)) C_radius_ = (g + m.sensor_radius()).asDiagonal() * m.C_radius;
   W_thickness_ = Thickness(model.W, Bw_);
   use_gain(std::move(L));
-  thickness_ = Thickness(error_noise());
+  if (model.W.constraints() + model.V.constraints() == 0) thickness_ = Thickness(error_noise());
 }
 
 void LuenbergerRecursion::use_gain(Matrix L) {

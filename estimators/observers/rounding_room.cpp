@@ -121,7 +121,7 @@ double row_norm(const Matrix& A) {
 }
 
 Matrix columns_of(const LineForm& X, MatrixIn T) {
-  if (T.rows() == 0) return Matrix(0, X.generators() + X.lines());
+  if (T.rows() == 0 || X.constraints() > 0) return Matrix(T.rows(), 0);
   Matrix N(T.rows(), X.generators() + X.lines());
   N << linalg::product(T, X.G), linalg::product(T, X.M);
   const double size = X.generators() > 0 ? N.leftCols(X.generators()).cwiseAbs().maxCoeff() : 1.0;

@@ -14,7 +14,7 @@ class Thickness {
  public:
   Thickness() = default;  ///< of {0}
   explicit Thickness(const Matrix& N);
-  /// Of {T x : x ∈ X} without its constraints.
+  /// Of {T x : x ∈ X}; taken for {0} where X has constraints, which may leave as little of it.
   Thickness(const LineForm& X, MatrixIn T);
 
   /// A σ with {x : |x_i| ≤ r_i} ⊆ σ Z, about the smallest; ∞: there is none.
@@ -71,8 +71,8 @@ Box reach_of(const Set& X);
 /// The largest sum of magnitudes of a row.
 double row_norm(const Matrix& A);
 
-/// The columns of {T x : x ∈ X} without its constraints; lines 1e8 times as long as its largest
-/// entry.
+/// The columns of {T x : x ∈ X}, lines 1e8 times as long as its largest entry; none where X has
+/// constraints.
 Matrix columns_of(const LineForm& X, MatrixIn T);
 
 }  // namespace cordon::estimators

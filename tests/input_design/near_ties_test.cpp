@@ -130,3 +130,45 @@ TEST_CASE("an input that acts by less than rounding of its row is not left out o
           least + Rational(1, 1000) + Rational(1, 1'000'000));
   }
 }
+
+TEST_CASE("what rows have been rounded by before counts as well") {
+  // y_2 = v_1 + b v_2 + 1.3 - 60 e: each e vanishes beside 1.3 as it is added up
+  constexpr double b = 5e-12, e = 1.0635417931669515e-16, epsilon = .1;
+  constexpr Index many = 60;
+  for (const double share : {.2, .5, .8}) {  // of the row's rounding that decides
+    Model free;
+    LinearModel& m = free.linear;
+    m.A = m.B = Matrix{{0}};
+    m.Bw = Matrix(1, 0);
+    m.C = Matrix{{0}, {0}};
+    m.D = Matrix{{1}, {0}};
+    m.Dv = Matrix::Constant(2, 3 + many, -e);
+    m.Dv.row(0).setZero();
+    m.Dv(0, 1) = 1;
+    m.Dv(1, 0) = 1;
+    m.Dv(1, 1) = b;
+    m.Dv(1, 2) = 1.3;
+    Vector center = Vector::Ones(3 + many);
+    center.head(2).setZero();
+    Matrix generators = Matrix::Zero(3 + many, 2);
+    generators.topRows(2) = Matrix::Identity(2, 2);
+    free.X0 = make_point(Vector{{0}});
+    free.W = make_space(0);
+    free.V = make_zonotope(center, generators);
+    free.U = make_box({Vector{{0}}, Vector{{5}}});
+    const Rational f = 1 + rational::exact(epsilon),
+                   offset = rational::exact(1.3) - many * rational::exact(e);
+    const double level =
+        Rational(f - f * rational::exact(b) + offset + rational::exact(share * many * e)).get_d();
+    Model fixed = free;
+    fixed.linear.D = Matrix{{0}, {0}};
+    fixed.linear.Dv = Matrix{{0}, {1}};
+    fixed.V = make_point(Vector{{level}});
+    const DesignOutcome outcome = designed({{{"free", free}, {"fixed", fixed}}, 0}, epsilon);
+    const Rational v = (rational::exact(level) - offset - f) / rational::exact(b),
+                   least = v > -f ? Rational(-v) : f;
+    CAPTURE(least.get_d());
+    CHECK(outcome.status != DesignStatus::infeasible);
+    CHECK(rational::exact(outcome.lower_bound) <= least * (1 + Rational(2, 1'000'000'000)));
+  }
+}

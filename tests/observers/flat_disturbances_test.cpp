@@ -221,3 +221,35 @@ TEST_CASE("an output beside such inputs is no outlier") {
     }
   }
 }
+
+TEST_CASE("a set that is flat by its constraints is taken as such") {
+  // the state stays 0, y_1 = .3 (u_1 + u_2) = .3 exactly, and constraints leave no noise of it
+  Model model;
+  LinearModel& m = model.linear;
+  m.A = Matrix{{.5}};
+  m.B = Matrix{{0, 0}};
+  m.Bw = Matrix{{1}};
+  m.C = Matrix{{1}, {0}};
+  m.D = Matrix{{0, 0}, {.3, .3}};
+  m.Dv = Matrix::Identity(2, 2);
+  model.X0 = make_box({Vector{{-1}}, Vector{{1}}});
+  model.W = make_box({Vector{{-.5}}, Vector{{.5}}});
+  model.V = {Matrix(2, 0),       Matrix{{.125, 0, 0}, {0, 1, -1}}, Vector::Zero(2), Matrix(1, 0),
+             Matrix{{0, 1, -1}},  // ξ₂ = ξ₃
+             Vector{{0}}};
+  model.U = make_space(2);
+  for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
+    for (const std::int64_t generators : {3, 4, 6}) {
+      CAPTURE(name);
+      CAPTURE(generators);
+      const auto observer =
+          registry().make<ObserverEntry>("prediction_correction", {model, backend(name)},
+                                         Params().set("max_generators", generators));
+      Index k = 0;
+      for (const double u : {123.25, -577.75, 811.5, -345.125, 997.25}) {
+        CAPTURE(k);
+        CHECK(observer->step({k++, Vector{{u, 1 - u}}, Vector{{0, .3}}}).consistent != Answer::no);
+      }
+    }
+  }
+}

@@ -369,3 +369,17 @@ TEST_CASE("the noise of an output that falls on the state which is open is not h
   CAPTURE(outcome.out);
   CHECK(outcome.code == 0);
 }
+
+TEST_CASE("rounding of an input that one state hands to another is not held against a claim") {
+  // B u cancels in x_2, by terms of 350 beside states of 1e-3, and x_1 is their sum one step later
+  const Run run(R"({"type": "lti", "A": [[1, 1], [0, -1]], "B": [[0, 0], [-0.5, -0.35]],
+      "C": [[0, 0]], "X0": {"type": "box", "lower": [-0.001, -0.001], "upper": [0.001, 0.001]},
+      "W": {"type": "box", "lower": [0, 0], "upper": [0, 0]},
+      "V": {"type": "box", "lower": [0], "upper": [0]}})",
+                R"({"csv": {"file": "data.csv", "inputs": ["u0", "u1"], "outputs": ["y0"]}})",
+                R"({"name": "P", "backend": "constrained_zonotope", "observer": "descriptor"})",
+                "u0,u1,y0\n700,-1000,0\n0,0,0\n0,0,0\n");
+  const Outcome outcome = run.verify();
+  CAPTURE(outcome.out);
+  CHECK(outcome.code == 0);
+}

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "designers/facets/growing_hull.hpp"
 
@@ -92,7 +93,8 @@ class Support {
                .is_empty() == cordon::Answer::no;
   }
   /// Finds how far the rows' right-hand sides may be moved, by their terms, before Q is empty.
-  /// False: not even by up to `effect`, and by rounding. `inputs` (N Z) tell what they do there.
+  /// False: not even by up to `effect`, and by rounding. `inputs` (N Z) tell what they do there;
+  /// the numbers of the rows have been rounded before.
   bool find_room(const Vector& effect, const Matrix& inputs) {
     const Matrix shares = L_.cwiseAbs().transpose();
     const Index operations = 2 * (pair_.G.rows() + pair_.G.cols() + inputs.cols()) + 8;
@@ -100,7 +102,7 @@ class Support {
         static_cast<double>(operations) * static_cast<double>(std::numeric_limits<Long>::epsilon());
     const LongMatrix by_inputs = L_.cast<Long>().transpose() * inputs.cast<Long>();
     moved_ = (1 + row_noise) * by_inputs.cwiseAbs().rowwise().sum().cast<double>() +
-             rounding * product(shares, pair_.terms);
+             (tolerances::product_noise + rounding) * product(shares, pair_.terms);
     room_ = Vector::Zero(moved_.size());
     for (double share = most_room; share > least_room; share /= 2) {
       const Vector room = share * pair_.terms;
@@ -113,7 +115,12 @@ class Support {
   /// How far the support of Q along d may lie below that of the points so far. Each satisfies rows
   /// that are moved by r, its residual and what is unknown of the rows; Q has a point z where they
   /// are moved by -r (1 - λ) / λ, as far as there is room; so that (1 - λ) x + λ z lies in Q.
-  double loss_along(const Vector& d) const { return 2 * lambda_ * terms_along(d); }
+  double loss_along(const Vector& d, double level) const {
+    const Vector h = product(R_, d);
+    const double least =  // of hᵀz
+        h.dot(c_) - pair_.factor * transposed_product(pair_.G, h).cwiseAbs().sum();
+    return lambda_ * (std::max(0.0, level - least) + row_noise * terms_along(d));
+  }
   double terms_along(const Vector& d) const {
     return pair_.terms.dot(Vector(product(R_, d)).cwiseAbs());
   }
@@ -289,7 +296,7 @@ class Builder {
       return false;
     }
     for (const GrowingHull::Facet& facet : hull.facets()) {
-      const double loss = support_.loss_along(product(basis, facet.h.normalized()));
+      const double loss = support_.loss_along(product(basis, facet.h.normalized()), facet.proven);
       set_.facets.push_back(
           facet_of(pair_, facet.proof, 0, std::max(0.0, facet.proven - hull.level(facet)) + loss));
     }

@@ -38,7 +38,10 @@ RoundingMargin::RoundingMargin(const Model& model, const LineForm& initial_set, 
       noise_(model.linear.Dv.cwiseAbs() * reach_of(model.V)),
       error_(Vector::Zero(model.linear.states())),
       largest_(Vector::Zero(model.linear.states())) {
-  if (!model_.is_descriptor()) return;
+  if (!model_.is_descriptor()) {
+    take_paths();
+    return;
+  }
   const Index n = model_.states();
   const SemiExplicitForm form(model_.E);
   const Index r = form.rank();
@@ -54,6 +57,18 @@ RoundingMargin::RoundingMargin(const Model& model, const LineForm& initial_set, 
       of_rows.asDiagonal();
   dynamic_ = (solved.leftCols(r) * to_dynamic).cwiseAbs();
   static_ = (solved.rightCols(n - r) * to_static).cwiseAbs();
+  take_paths();
+}
+
+void RoundingMargin::take_paths() {
+  const Index n = model_.states();
+  const Matrix step = dynamic_ * model_.A.cwiseAbs();
+  Matrix power = Matrix::Identity(n, n);
+  paths_ = power;
+  for (Index k = 1; k < n; ++k) {
+    power = step * power;
+    paths_ += power;
+  }
 }
 
 Vector RoundingMargin::forces(VectorIn u) const {
@@ -78,7 +93,7 @@ Vector RoundingMargin::cut_lines(const Vector& data, const Sample& now) const {
 /// What rounding of an output leaves open of each state, were it a share of 1 of the data: falls on
 /// the state that the output shows most of, and on others as far as the set leaves them open, for
 /// the first may be known by other means.
-Vector RoundingMargin::of_outputs(const LineForm& X, const Vector& data) const {
+Vector RoundingMargin::left_open_by(const Vector& data, const LineForm& X) const {
   const Index n = model_.C.cols();
   Vector sizes = Vector::Zero(n), widths = X.G.cwiseAbs().rowwise().sum();
   for (Index i = 0; i < n && X.lines() > 0; ++i) {
@@ -116,10 +131,10 @@ Vector RoundingMargin::next(const LineForm& X, const Sample* before, const Sampl
   largest_ = largest_.cwiseMax(terms);
   error_ += of_a_step_ * terms;
   of_outputs_ = of_operations * (data + model_.C.cwiseAbs() * (terms + along_lines(X, terms)));
-  const Vector from_outputs = of_outputs(X, data);
+  const Vector from_outputs = left_open_by(data, X);
   error_ += of_the_data_ * from_outputs;
   largest_ = largest_.cwiseMax(from_outputs);
-  return error_.cwiseMin(of_all * largest_).unaryExpr([](double x) {
+  return error_.cwiseMin(of_all * (paths_ * largest_)).unaryExpr([](double x) {
     return std::isfinite(x) ? x : 0.0;
   });
 }
