@@ -134,6 +134,16 @@ TEST_CASE("the time of a pipeline is of interest where it designs, the steps are
   CHECK(texts(compared(table), 0) == Texts{"a", "3", "9.200 *", "1", "100 % *", "0.001000", "2"});
 }
 
+TEST_CASE("how far steps go beyond their median is told of single runs") {
+  ResultTable table =
+      run_table({{"step_us", true}, {"step_99_us", true}, {"step_largest_us", true}}, {{2, 5, 9}});
+  CHECK(titles(compared(table)) ==
+        Texts{"pipeline", "µs/step", "99 % of steps [µs]", "largest step [µs]"});
+  table.axes.push_back({"seed", "/data/simulate/seed", {"1"}, true, {}});
+  table.rows[0].at = {0};
+  CHECK(titles(compared(table)) == Texts{"pipeline", "µs/step"});
+}
+
 TEST_CASE("what is proven of designs has columns") {
   ResultTable table =
       run_table({{"horizon", false}, {"cost", false}, {"optimal", false}, {"infeasible", false}},

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "study/reading/read_parts.hpp"
+#include "study/reading/scaled_value.hpp"
 
 namespace cordon::json {
 
@@ -134,9 +135,37 @@ std::vector<std::string> read_labels(const Cursor& at, const std::vector<Value>&
   return labels;
 }
 
-std::optional<WrittenAxis> read_axis(const Cursor& at) {
-  if (!at.expect_keys({"name", "path", "values", "labels", "range", "repeat"}, "key of an axis",
-                      axis_form))
+/// Factors in place of values: each is what stands at the path, times the factor.
+void scale_values(const Cursor& root, const Cursor& scale_at, WrittenAxis& axis) {
+  std::string problem;
+  const Value* const base = value_at(root.value(), axis.path);
+  if (!base) problem = "leads to nothing";
+  std::vector<Value> values;
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < axis.values.size() && problem.empty(); ++i) {
+    const Value& factor = axis.values[i];
+    const Cursor at = Cursor(factor, child(axis.pointer + "/values", i), scale_at.problems());
+    if (!at.expect(Kind::number, "a factor: 0.5, 1, 2") || !(factor.number > 0)) {
+      if (factor.kind == Kind::number) at.error("is no factor", "write a number above 0");
+      axis.values.clear();
+      return;
+    }
+    if (const auto one = scaled(*base, factor.number, problem)) values.push_back(*one);
+    if (problem.empty() && !seen.insert(text_to_compare(values.back())).second)
+      problem = "leads to something that has no size";
+    if (axis.labels.size() == i) axis.labels.push_back(text_to_compare(factor));
+  }
+  if (!problem.empty()) {
+    scale_at.error(std::move(problem), "write \"path\", and the values themselves");
+    axis.values.clear();
+    return;
+  }
+  axis.values = std::move(values);
+}
+
+std::optional<WrittenAxis> read_axis(const Cursor& root, const Cursor& at) {
+  if (!at.expect_keys({"name", "path", "scale", "values", "labels", "range", "repeat"},
+                      "key of an axis", axis_form))
     return std::nullopt;
   WrittenAxis axis;
   axis.pointer = at.pointer();
@@ -147,7 +176,12 @@ std::optional<WrittenAxis> read_axis(const Cursor& at) {
         "deviation", "min", "q05", "q25", "median", "q75", "q95", "max", "relative"})
     if (name == taken)
       name_at->error("is the name of another column of the results", "choose another one");
-  const auto path_at = at.need("path", "what is varied: \"/pipelines/*/observer/max_generators\"");
+  const auto scale_at = at.find("scale");
+  if (scale_at && at.find("path"))
+    at.error("holds both \"path\" and \"scale\"", "remove one of the two");
+  const auto path_at =
+      scale_at ? scale_at
+               : at.need("path", "what is varied: \"/pipelines/*/observer/max_generators\"");
   auto path = path_at ? read_path(*path_at) : std::nullopt;
   const auto values_at = at.find("values"), range_at = at.find("range");
   if (values_at && range_at)
@@ -165,7 +199,8 @@ std::optional<WrittenAxis> read_axis(const Cursor& at) {
   axis.name = *name;
   axis.path = std::move(*path);
   axis.path_line = path_at->value().line;
-  return axis;
+  if (scale_at) scale_values(root, *scale_at, axis);
+  return axis.values.empty() ? std::nullopt : std::optional(std::move(axis));
 }
 
 /// Compares every axis with those before it.
@@ -181,9 +216,10 @@ std::set<std::size_t> check_pairs(const Cursor& list,
       if (axis.name == earlier.name)
         list.item(index).find("name")->error("repeats the name of " + other, "names are unique");
       if (axis.path.meets(earlier.path)) {
-        list.item(index).find("path")->error(
-            "writes where " + other + " writes too: " + earlier.path.text,
-            "remove one of the two, or make them one axis with objects as values");
+        const Cursor at = list.item(index);
+        at.find(at.find("scale") ? "scale" : "path")
+            ->error("writes where " + other + " writes too: " + earlier.path.text,
+                    "remove one of the two, or make them one axis with objects as values");
         wrong.insert(j);
       }
     }
@@ -216,7 +252,7 @@ std::vector<WrittenAxis> read_sweep(const Cursor& root) {
   }
   std::vector<std::pair<std::size_t, WrittenAxis>> axes;
   for (std::size_t i = 0; i < list->size(); ++i) {
-    if (auto axis = read_axis(list->item(i))) axes.emplace_back(i, std::move(*axis));
+    if (auto axis = read_axis(root, list->item(i))) axes.emplace_back(i, std::move(*axis));
   }
   const std::set<std::size_t> wrong = check_pairs(*list, axes);
   check_points(root, *list, axes);

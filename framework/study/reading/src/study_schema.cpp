@@ -267,6 +267,9 @@ Json sweep() {
       described(Json{{"type", "string"}, {"pattern", "^(/([^~]|~[01])*)+$"}, {"maxLength", 4096}},
                 "what is varied: a JSON pointer, with \"*\" for every element of a list: "
                 "/pipelines/*/observer/max_generators");
+  properties["scale"] =
+      described(properties["path"],
+                "in place of path: one place, whose number, matrix or set is scaled by the values");
   properties["values"] = described(
       Json{{"type", "array"}, {"minItems", 1}, {"maxItems", 100'000}, {"uniqueItems", true}},
       "they take the place of what stands there, one after another");
@@ -279,8 +282,10 @@ Json sweep() {
   properties["repeat"] = described(
       Json{{"type", "boolean"}},
       "statistics are taken over these values; by default true where the path ends in /seed");
-  Json axis = object(properties, {"name", "path"});
-  axis["oneOf"] = {{{"required", {"values"}}}, {{"required", {"range"}}}};
+  Json axis = object(properties, {"name"});
+  const Json one_way{{"oneOf", {{{"required", {"path"}}}, {{"required", {"scale"}}}}}},
+      one_list{{"oneOf", {{{"required", {"values"}}}, {{"required", {"range"}}}}}};
+  axis["allOf"] = {one_way, one_list};
   return {{"type", "array"}, {"items", axis}, {"minItems", 1}, {"maxItems", 100}};
 }
 

@@ -34,6 +34,8 @@ bool is_worth(const Summary& summary, const Column& shown) {
 }
 
 /// Of pipelines that run, the time of a step is of interest; of those that design, of the whole.
+/// How far single steps go beyond their median is shown of single runs alone: means over
+/// repetitions tell of the load of the machine.
 std::vector<Column> shown_columns(const ResultTable& table, const Summary& summary) {
   std::vector<Column> found;
   for (const std::size_t column : detail::compared_columns(table)) {
@@ -45,6 +47,12 @@ std::vector<Column> shown_columns(const ResultTable& table, const Summary& summa
                     whole = detail::column_of(table, "wall_s"), none = table.columns.size();
   const bool steps =
       std::any_of(found.begin(), found.end(), [&](const Column& s) { return s.column == step; });
+  if (!table.axes.empty()) {
+    for (const char* name : {"step_99_us", "step_largest_us"}) {
+      std::erase_if(found,
+                    [&](const Column& s) { return s.column == detail::column_of(table, name); });
+    }
+  }
   if (steps && detail::column_of(table, "cost") == none)
     std::erase_if(found, [&](const Column& s) { return s.column == whole; });
   return found;

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "study/reading/sweep_path.hpp"
+#include "study/text/json_text.hpp"
+
+namespace cordon::json {
+
+/// What stands at the path, which leads to one place; null: nothing does.
+const Value* value_at(const Value& tree, const SweepPath& path);
+
+/// A value times a factor: a number, every number of lists (a matrix), or a set about its centre,
+/// of type box, zonotope, constrained_zonotope or line_zonotope. Nothing for others; `problem` says
+/// why.
+std::optional<Value> scaled(const Value& value, double factor, std::string& problem);
+
+}  // namespace cordon::json

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/reading/scaled_value.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include "study/reading/read_parts.hpp"
+
+namespace cordon::json {
+
+namespace {
+
+using Kind = Value::Kind;
+
+Value number_value(double number, int line) {
+  Value value;
+  value.kind = Kind::number;
+  value.line = line;
+  value.number = number;
+  return value;
+}
+
+Value with_items(const Value& value, std::vector<Value> items) {
+  const auto parts = std::make_shared<Parts>(*value.parts);
+  parts->items = std::move(items);
+  Value changed = value;
+  changed.parts = parts;
+  return changed;
+}
+
+/// Every number of a number or of lists; nothing if there is something else.
+std::optional<Value> times(const Value& value, double factor) {
+  if (value.kind == Kind::number) {
+    const double number = factor * value.number;
+    return std::isfinite(number) ? std::optional(number_value(number, value.line)) : std::nullopt;
+  }
+  if (value.kind != Kind::array) return std::nullopt;
+  std::vector<Value> items;
+  for (const Value& item : value.items()) {
+    auto one = times(item, factor);
+    if (!one) return std::nullopt;
+    items.push_back(*std::move(one));
+  }
+  return with_items(value, std::move(items));
+}
+
+/// A member in place of another one.
+Value with_member(const Value& object, std::string_view key, Value member) {
+  std::vector<Value> items = object.items();
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (object.keys()[i] == key) items[i] = member;
+  }
+  return with_items(object, std::move(items));
+}
+
+std::optional<Value> scaled_box(const Value& box, double factor) {
+  const Value *lower = box.find("lower"), *upper = box.find("upper");
+  if (!lower || !upper || lower->kind != Kind::array || upper->kind != Kind::array ||
+      lower->items().size() != upper->items().size())
+    return std::nullopt;
+  std::vector<Value> below, above;
+  for (std::size_t i = 0; i < lower->items().size(); ++i) {
+    const Value &from = lower->items()[i], &to = upper->items()[i];
+    if (from.kind != Kind::number || to.kind != Kind::number) return std::nullopt;
+    const double centre = from.number / 2 + to.number / 2,
+                 half = factor * (to.number / 2 - from.number / 2);
+    if (!std::isfinite(centre - half) || !std::isfinite(centre + half)) return std::nullopt;
+    below.push_back(number_value(centre - half, from.line));
+    above.push_back(number_value(centre + half, to.line));
+  }
+  const Value wider = with_member(box, "lower", with_items(*lower, std::move(below)));
+  return with_member(wider, "upper", with_items(*upper, std::move(above)));
+}
+
+}  // namespace
+
+const Value* value_at(const Value& tree, const SweepPath& path) {
+  const Value* value = &tree;
+  for (const PathStep& step : path.steps) {
+    if (value->kind == Kind::object) {
+      value = value->find(step.key);
+    } else if (const auto index = step_index(step.key);
+               value->kind == Kind::array && index && *index < value->items().size()) {
+      value = &value->items()[*index];
+    } else {
+      return nullptr;
+    }
+    if (!value) return nullptr;
+  }
+  return value;
+}
+
+std::optional<Value> scaled(const Value& value, double factor, std::string& problem) {
+  if (value.kind != Kind::object) {
+    auto result = times(value, factor);
+    if (!result) problem = "leads to something else than a number, a matrix or a set";
+    return result;
+  }
+  const Value* const type = value.find("type");
+  const std::string name = type && type->kind == Kind::text ? type->text() : "";
+  if (name == "box") {
+    auto result = scaled_box(value, factor);
+    if (!result) problem = "leads to a box whose bounds are not scaled";
+    return result;
+  }
+  const Value* const generators = value.find("generators");
+  const bool generated =
+      name == "zonotope" || name == "constrained_zonotope" || name == "line_zonotope";
+  auto scaled_generators = generated && generators ? times(*generators, factor) : std::nullopt;
+  if (!scaled_generators) {
+    problem =
+        "leads to an object that is not scaled: sets of type box, zonotope, constrained_zonotope "
+        "and line_zonotope are";
+    return std::nullopt;
+  }
+  return with_member(value, "generators", *std::move(scaled_generators));
+}
+
+}  // namespace cordon::json
