@@ -17,29 +17,35 @@ using rational::Rational;
 
 namespace {
 
+/// y = (u, 0) + Dv v, or y = (0, level).
+ModeBank bank_of(const Matrix& Dv, const LineForm& V, double level, double most) {
+  Model free;
+  LinearModel& m = free.linear;
+  m.A = m.B = Matrix{{0}};
+  m.Bw = Matrix(1, 0);
+  m.C = Matrix{{0}, {0}};
+  m.D = Matrix{{1}, {0}};
+  m.Dv = Dv;
+  free.X0 = make_point(Vector{{0}});
+  free.W = make_space(0);
+  free.V = V;
+  free.U = make_box({Vector{{0}}, Vector{{most}}});
+  Model fixed = free;
+  fixed.linear.D = Matrix{{0}, {0}};
+  fixed.linear.Dv = Matrix{{0}, {1}};
+  fixed.V = make_point(Vector{{level}});
+  return {{{"free", free}, {"fixed", fixed}}, 0};
+}
+
 /// y_1 = u + v_2 and y_2 = v_1 + b v_2 + a v_3 within ‖v‖∞ ≤ 1, or y_1 = 0 and y_2 = `level`.
 struct NearTie {
   double a, b, epsilon, level;
 
   ModeBank bank(double most, const std::array<Index, 3>& order) const {
-    Model free;
-    LinearModel& m = free.linear;
-    m.A = m.B = Matrix{{0}};
-    m.Bw = Matrix(1, 0);
-    m.C = Matrix{{0}, {0}};
-    m.D = Matrix{{1}, {0}};
-    m.Dv = Matrix(2, 3);
+    Matrix Dv(2, 3);
     const Matrix columns{{0, 1, 0}, {1, b, a}};
-    for (Index i = 0; i < 3; ++i) m.Dv.col(order[static_cast<std::size_t>(i)]) = columns.col(i);
-    free.X0 = make_point(Vector{{0}});
-    free.W = make_space(0);
-    free.V = make_box({-Vector::Ones(3), Vector::Ones(3)});
-    free.U = make_box({Vector{{0}}, Vector{{most}}});
-    Model fixed = free;
-    fixed.linear.D = Matrix{{0}, {0}};
-    fixed.linear.Dv = Matrix{{0}, {1}};
-    fixed.V = make_point(Vector{{level}});
-    return {{{"free", free}, {"fixed", fixed}}, 0};
+    for (Index i = 0; i < 3; ++i) Dv.col(order[static_cast<std::size_t>(i)]) = columns.col(i);
+    return bank_of(Dv, make_box({-Vector::Ones(3), Vector::Ones(3)}), level, most);
   }
   /// The least u ≥ 0 with κ ≥ ε: -v_2 where v_2 is as small as v_1 and v_3 let it be.
   Rational least() const {
@@ -136,35 +142,22 @@ TEST_CASE("what rows have been rounded by before counts as well") {
   constexpr double b = 5e-12, e = 1.0635417931669515e-16, epsilon = .1;
   constexpr Index many = 60;
   for (const double share : {.2, .5, .8}) {  // of the row's rounding that decides
-    Model free;
-    LinearModel& m = free.linear;
-    m.A = m.B = Matrix{{0}};
-    m.Bw = Matrix(1, 0);
-    m.C = Matrix{{0}, {0}};
-    m.D = Matrix{{1}, {0}};
-    m.Dv = Matrix::Constant(2, 3 + many, -e);
-    m.Dv.row(0).setZero();
-    m.Dv(0, 1) = 1;
-    m.Dv(1, 0) = 1;
-    m.Dv(1, 1) = b;
-    m.Dv(1, 2) = 1.3;
+    Matrix Dv = Matrix::Constant(2, 3 + many, -e);
+    Dv.row(0).setZero();
+    Dv(0, 1) = 1;
+    Dv(1, 0) = 1;
+    Dv(1, 1) = b;
+    Dv(1, 2) = 1.3;
     Vector center = Vector::Ones(3 + many);
     center.head(2).setZero();
     Matrix generators = Matrix::Zero(3 + many, 2);
     generators.topRows(2) = Matrix::Identity(2, 2);
-    free.X0 = make_point(Vector{{0}});
-    free.W = make_space(0);
-    free.V = make_zonotope(center, generators);
-    free.U = make_box({Vector{{0}}, Vector{{5}}});
     const Rational f = 1 + rational::exact(epsilon),
                    offset = rational::exact(1.3) - many * rational::exact(e);
     const double level =
         Rational(f - f * rational::exact(b) + offset + rational::exact(share * many * e)).get_d();
-    Model fixed = free;
-    fixed.linear.D = Matrix{{0}, {0}};
-    fixed.linear.Dv = Matrix{{0}, {1}};
-    fixed.V = make_point(Vector{{level}});
-    const DesignOutcome outcome = designed({{{"free", free}, {"fixed", fixed}}, 0}, epsilon);
+    const ModeBank bank = bank_of(Dv, make_zonotope(center, generators), level, 5);
+    const DesignOutcome outcome = designed(bank, epsilon);
     const Rational v = (rational::exact(level) - offset - f) / rational::exact(b),
                    least = v > -f ? Rational(-v) : f;
     CAPTURE(least.get_d());

@@ -84,6 +84,13 @@ TEST_CASE("what cannot be scaled is told") {
   const Json wide{{"type", "box"}, {"lower", {-100}}, {"upper", {100}}};
   CHECK_THROWS_WITH_AS(Read(with_axis(scale("/system/V", {1, 1e308}), wide)),
                        doctest::Contains("not scaled"), InputError);
+  Json many = Json::array();
+  for (int i = 1; i <= 100'000; ++i) many.push_back(i);
+  const Json large{{"type", "zonotope"},
+                   {"center", {0}},
+                   {"generators", Json::array({std::vector<double>(1000, 1)})}};
+  CHECK_THROWS_WITH_AS(Read(with_axis(scale("/system/V", many), large)),
+                       doctest::Contains("makes more than 10 million numbers"), InputError);
   Json axis = scale("/system/V", {1, 2});
   axis["path"] = "/system/V";
   check_refused(axis, "/sweep/0", "holds both");

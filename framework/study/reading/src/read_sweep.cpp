@@ -17,6 +17,7 @@ using Kind = Value::Kind;
 constexpr std::size_t max_axes = 100;
 constexpr std::size_t max_values = 100'000;
 constexpr double max_points = 1e7;
+constexpr std::size_t most_scaled = 10'000'000;
 constexpr const char* axis_form =
     "{\"name\": \"seed\", \"path\": \"/data/simulate/seed\", \"range\": [1, 50]}";
 
@@ -140,6 +141,8 @@ void scale_values(const Cursor& root, const Cursor& scale_at, WrittenAxis& axis)
   std::string problem;
   const Value* const base = value_at(root.value(), axis.path);
   if (!base) problem = "leads to nothing";
+  if (base && count_of(*base) > most_scaled / axis.values.size())
+    problem = "makes more than 10 million numbers";
   std::vector<Value> values;
   std::set<std::string> seen;
   for (std::size_t i = 0; i < axis.values.size() && problem.empty(); ++i) {

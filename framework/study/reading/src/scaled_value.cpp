@@ -90,6 +90,13 @@ const Value* value_at(const Value& tree, const SweepPath& path) {
   return value;
 }
 
+std::size_t count_of(const Value& value) {
+  std::size_t count = 1;
+  if (value.kind != Kind::array && value.kind != Kind::object) return count;
+  for (const Value& item : value.items()) count += count_of(item);
+  return count;
+}
+
 std::optional<Value> scaled(const Value& value, double factor, std::string& problem) {
   if (value.kind != Kind::object) {
     auto result = times(value, factor);

@@ -12,6 +12,9 @@ namespace cordon::json {
 /// What stands at the path, which leads to one place; null: nothing does.
 const Value* value_at(const Value& tree, const SweepPath& path);
 
+/// How many values it is made of, itself included.
+std::size_t count_of(const Value& value);
+
 /// A value times a factor: a number, every number of lists (a matrix), or a set about its centre,
 /// of type box, zonotope, constrained_zonotope or line_zonotope. Nothing for others; `problem` says
 /// why.
