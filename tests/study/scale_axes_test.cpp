@@ -74,9 +74,10 @@ TEST_CASE("what cannot be scaled is told") {
   check_refused(scale("/system/V", {1, 0}), "/sweep/0/values/1", "is no factor");
   check_refused(scale("/system/V", {1, -2}), "/sweep/0/values/1", "is no factor");
   check_refused(scale("/system/V", {1, "two"}), "/sweep/0/values/1", "must be a number");
-  check_refused(scale("/system/F", {1, 2}), "/sweep/0/scale", "leads to nothing");
+  check_refused(scale("/system/F", {1, 2}), "/sweep/0/scale", "/system has no \"F\"");
+  check_refused(scale("/system/B/9/0", {1, 2}), "/sweep/0/scale", "/system/B has no \"9\"");
   check_refused(scale("/pipelines/*/observer/max_generators", {1, 2}), "/sweep/0/scale",
-                "leads to nothing");
+                "leads to many places");
   check_refused(scale("/system/type", {1, 2}), "/sweep/0/scale", "leads to something else");
   check_refused(scale("/pipelines/0/backend", {1, 2}), "/sweep/0/scale",
                 "leads to an object that is not scaled");

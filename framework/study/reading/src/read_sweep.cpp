@@ -138,10 +138,13 @@ std::vector<std::string> read_labels(const Cursor& at, const std::vector<Value>&
 
 /// Factors in place of values: each is what stands at the path, times the factor.
 void scale_values(const Cursor& root, const Cursor& scale_at, WrittenAxis& axis) {
+  const Value* const base = value_at(root.value(), axis.path, scale_at);
+  if (!base) {
+    axis.values.clear();
+    return;
+  }
   std::string problem;
-  const Value* const base = value_at(root.value(), axis.path);
-  if (!base) problem = "leads to nothing";
-  if (base && count_of(*base) > most_scaled / axis.values.size())
+  if (count_of(*base) > most_scaled / axis.values.size())
     problem = "makes more than 10 million numbers";
   std::vector<Value> values;
   std::set<std::string> seen;

@@ -74,18 +74,27 @@ std::optional<Value> scaled_box(const Value& box, double factor) {
 
 }  // namespace
 
-const Value* value_at(const Value& tree, const SweepPath& path) {
+const Value* value_at(const Value& tree, const SweepPath& path, const Cursor& at) {
   const Value* value = &tree;
+  std::string place;
   for (const PathStep& step : path.steps) {
-    if (value->kind == Kind::object) {
-      value = value->find(step.key);
-    } else if (const auto index = step_index(step.key);
-               value->kind == Kind::array && index && *index < value->items().size()) {
-      value = &value->items()[*index];
-    } else {
+    if (step.every) {
+      at.error("leads to many places: \"*\"", "name one place");
       return nullptr;
     }
-    if (!value) return nullptr;
+    const Value* next = nullptr;
+    const auto index = step_index(step.key);
+    if (value->kind == Kind::object) next = value->find(step.key);
+    if (value->kind == Kind::array && index && *index < value->items().size())
+      next = &value->items()[*index];
+    if (!next) {
+      const bool has_keys = value->kind == Kind::object;
+      at.error((place.empty() ? "the study" : place) + " has no " + in_quotes(step.key),
+               has_keys ? suggest(step.key, value->keys()) : "");
+      return nullptr;
+    }
+    value = next;
+    place = child(place, step.key);
   }
   return value;
 }

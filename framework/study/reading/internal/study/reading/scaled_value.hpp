@@ -5,12 +5,14 @@
 #include <string>
 
 #include "study/reading/sweep_path.hpp"
+#include "study/text/json_cursor.hpp"
 #include "study/text/json_text.hpp"
 
 namespace cordon::json {
 
-/// What stands at the path, which leads to one place; null: nothing does.
-const Value* value_at(const Value& tree, const SweepPath& path);
+/// What stands at the path of `at`, which leads to one place; null: nothing does, and it is
+/// reported there.
+const Value* value_at(const Value& tree, const SweepPath& path, const Cursor& at);
 
 /// How many values it is made of, itself included.
 std::size_t count_of(const Value& value);
