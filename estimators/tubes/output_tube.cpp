@@ -59,7 +59,6 @@ class TubeBuilder {
       : m_(with_exact_effectiveness_applied(model.linear)),
         span_(span),
         n_(m_.states()),
-        is_exact_(!m_.unscaled),
         X0_(imported(backend, model.X0)),
         W_(imported(backend, model.W)),
         V_(imported(backend, model.V)) {
@@ -88,7 +87,8 @@ class TubeBuilder {
              Matrix::Zero(outputs, inputs), Vector::Zero(outputs),
              Matrix::Zero(rows, lines),     Matrix::Zero(rows, factors),
              Matrix::Zero(rows, inputs),    Vector::Zero(rows)};
-    tube_.is_exact = is_exact_;
+    tube_.is_exact = !m_.unscaled && !encloses_;
+    tube_.encloses = encloses_;
     tube_.c_size = Vector::Zero(outputs);
     tube_.b_size = Vector::Zero(rows);
 
@@ -107,7 +107,7 @@ class TubeBuilder {
  private:
   LineForm imported(const SetBackend& backend, const LineForm& X) {
     const Enclosure set = backend.import(X);
-    is_exact_ = is_exact_ && set.tightness == Tightness::exact && backend.info().exact_exchange;
+    encloses_ = encloses_ || set.tightness != Tightness::exact || !backend.info().exact_exchange;
     return set->line_form();
   }
 
@@ -197,7 +197,7 @@ class TubeBuilder {
   LinearModel m_;
   const TubeSpan& span_;
   Index n_;
-  bool is_exact_;  ///< sets and matrices are those of the model
+  bool encloses_ = false;  ///< a set is wider than that of the model
   LineForm X0_, W_, V_;
   std::optional<LineForm> XA_;
   std::optional<DescriptorMatrix> E_;
