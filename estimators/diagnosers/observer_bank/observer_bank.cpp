@@ -39,26 +39,30 @@ std::optional<Certificate> separated_axis(const Box& hull, const Vector& size) {
   return best;
 }
 
-/// Is 0 ∈ R? In one dimension the hull is the set, and needs no program. What the sets answer
-/// bounds no rounding errors of the numbers behind R, so that `no` has to hold for a neighbourhood
-/// of 0.
+/// Is 0 ∉ R proven? In one dimension the hull is the set, and needs no program. What the sets
+/// answer bounds no rounding errors of the numbers behind R, so that `no` has to hold for a
+/// neighbourhood of 0. That 0 lies in R shows nothing: R encloses, and is about one sample.
 void ask(const SetBackend& backend, const Enclosure& R, const Box& hull, const Vector& size,
          ModeEvidence& evidence) {
   if (hull.is_empty()) {  // no error in X̃ explains the sample of the reset
-    evidence.consistent = negate(R->is_empty(&evidence.why));
+    if (R->is_empty(&evidence.why) == Answer::yes) {
+      evidence.consistent = Answer::no;
+      return;
+    }
   } else if (auto proof = separated_axis(hull, size)) {
     evidence.consistent = Answer::no;
     evidence.why = std::move(*proof);
+    return;
   } else if (hull.dim() > 1) {
-    evidence.consistent = R->contains(Vector::Zero(hull.dim()), &evidence.why);
-    if (evidence.consistent != Answer::no) return;
-    const Vector slack = rounding_slack(hull, size);
-    if (backend.sum(R, backend.box({-slack, slack}))->contains(Vector::Zero(hull.dim())) ==
-        Answer::no)
+    const Vector zero = Vector::Zero(hull.dim()), slack = rounding_slack(hull, size);
+    if (R->contains(zero, &evidence.why) == Answer::no &&
+        backend.sum(R, backend.box({-slack, slack}))->contains(zero) == Answer::no) {
+      evidence.consistent = Answer::no;
       return;
-    evidence.consistent = Answer::unknown;
-    evidence.why = {};
+    }
   }
+  evidence.consistent = Answer::unknown;
+  evidence.why = {};
 }
 
 /// Entries of the outputs that are there among those of all; others are 0, or free.
