@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "diagnosis_scores.hpp"
+
 namespace cordon::apps {
 
 namespace {
@@ -17,10 +19,6 @@ using Rows = std::vector<std::vector<std::string>>;
 
 constexpr std::size_t most_lines = 60;
 constexpr Index nominal = 0;  // in bank_of(study)
-
-std::string name_of(const Names& modes, Index mode) {
-  return mode < 0 ? "outside the bank" : modes[static_cast<std::size_t>(mode)];
-}
 
 /// How far 0 is outside, in the coordinate where it is farthest; not positive if it is inside.
 double distance_to_zero(const Box& box) {
@@ -63,15 +61,6 @@ std::string outside_name(const Study& study, Index k) {
                      fmt::join(additive, ", "));
 }
 
-/// What a true mode of -1 is in this study.
-std::string outside_label(const Study& study) {
-  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
-  if (!simulate || simulate->additive_faults.empty()) return "outside the bank";
-  const bool others = std::any_of(simulate->faults.begin(), simulate->faults.end(),
-                                  [](const auto& f) { return f.mode < 0; });
-  return others ? "outside the bank" : "additive fault";
-}
-
 std::string event_name(const DiagnosisEvent& event, std::optional<Index> truth_before) {
   if (event.what == Kind::truth) {
     if (event.mode == nominal) return "fault ends";
@@ -80,8 +69,21 @@ std::string event_name(const DiagnosisEvent& event, std::optional<Index> truth_b
   return std::string(to_string(event.what));
 }
 
+/// "leak 2 [L/s] at k = 121 (605 s) in [0.0069, 0.229]", of every additive fault that is proven.
+std::string proven_text(const std::vector<FaultBound>& faults, const Labels& labels) {
+  std::string text;
+  for (const FaultBound& bound : faults) {
+    const auto i = static_cast<std::size_t>(bound.fault);
+    text += fmt::format(
+        "{}{} at {} in [{:.4g}, {:.4g}]", text.empty() ? "" : ", ",
+        i < labels.faults.size() ? labels.faults[i] : fmt::format("additive fault {}", i + 1),
+        time_text(labels, bound.at), bound.lower, bound.upper);
+  }
+  return text;
+}
+
 /// Why something is said that has no proof of its own.
-std::string reason_text(const DiagnosisEvent& event) {
+std::string reason_text(const DiagnosisEvent& event, std::size_t modes) {
   switch (event.what) {
     case Kind::truth:
       return "by the data";
@@ -89,12 +91,15 @@ std::string reason_text(const DiagnosisEvent& event) {
       return event.mode < 0 ? "every mode is possible" : "assumed by the study";
     case Kind::isolated:
       return "no other mode is left";
+    case Kind::resumed:
+      return "nothing contradicts it any more";
     case Kind::isolating:
       return "several modes are possible";
     case Kind::ambiguous:
       return "several modes are left after the waiting time";
     case Kind::unknown_fault:
-      return "every mode is excluded: not yet identified, or none of these";
+      return modes == 1 ? "the plant is outside the bank"
+                        : "every mode is excluded: not yet identified, or none of these";
     default:
       return "";
   }
@@ -116,82 +121,20 @@ Rows timeline(const Study& study, const DiagnosisOutcome& found, std::int64_t& l
       ++left;
       continue;
     }
-    std::string mode = event.mode >= 0 ? name_of(found.modes, event.mode) : "";
+    std::string mode = event.mode >= 0 ? mode_name(found.modes, event.mode) : "";
     if (event.what == Kind::starts && event.mode < 0) mode = "any";
     if (event.what == Kind::truth && event.mode < 0) mode = outside_name(study, event.k);
     if (event.what == Kind::detected) mode = "departure from " + mode;
-    const std::string evidence = evidence_text(event.evidence);
-    rows.push_back({fmt::format("{}", event.k), event_name(event, before), mode,
-                    evidence.empty() ? reason_text(event) : evidence});
+    std::string evidence = event.faults.empty() ? evidence_text(event.evidence)
+                                                : proven_text(event.faults, study.labels);
+    if (evidence.empty()) evidence = reason_text(event, found.modes.size());
+    rows.push_back({fmt::format("{}", event.k), event_name(event, before), mode, evidence});
     if (seconds > 0) {
       rows.back().insert(rows.back().begin() + 1,
                          fmt::format("{:.6g}", static_cast<double>(event.k) * seconds));
     }
   }
   return rows;
-}
-
-std::string delay_text(const DelayStatistics& delays) {
-  if (delays.count == 0) return "-";
-  return fmt::format("{} / {} / {}", delays.min, delays.median, delays.max);
-}
-
-Rows statistics(const Study& study, const DiagnosisOutcome& found) {
-  const bool outside = std::any_of(found.statistics.begin(), found.statistics.end(),
-                                   [](const auto& m) { return m.mode < 0; });
-  Rows rows{{"TRUE MODE", "TIMES", "DETECTED", "ISOLATED", "NOT ISOLATED", "WRONG MODE",
-             "DETECTION DELAY", "ISOLATION DELAY"}};
-  if (outside) rows[0].insert(rows[0].begin() + 6, "UNKNOWN FAULT");
-  std::vector<ModeStatistics> all = found.statistics;
-  std::stable_partition(all.begin(), all.end(),
-                        [](const ModeStatistics& counts) { return counts.mode >= 0; });
-  for (const ModeStatistics& counts : all) {
-    const bool inside = counts.mode >= 0;
-    rows.push_back({inside ? name_of(found.modes, counts.mode) : outside_label(study),
-                    fmt::format("{}", counts.segments), fmt::format("{}", counts.detected),
-                    inside ? fmt::format("{}", counts.isolated) : "-",
-                    inside ? fmt::format("{}", counts.missed) : "-",
-                    fmt::format("{}", counts.wrong), delay_text(counts.detection),
-                    delay_text(counts.isolation)});
-    if (outside)
-      rows.back().insert(rows.back().begin() + 6, fmt::format("{}", counts.unknown_fault));
-  }
-  return rows;
-}
-
-std::string runs_text(std::int64_t runs) {
-  return fmt::format("{} run{}", runs, runs == 1 ? "" : "s");
-}
-
-std::string score_text(const Study& study, const DiagnosisOutcome& found, const Paint& paint) {
-  if (!found.truth_known) return "The data do not tell the true mode: nothing is scored.\n";
-  std::string text;
-  if (!found.statistics.empty()) {
-    text = fmt::format("Over {} (delays in steps: smallest / median / largest)\n{}\n",
-                       runs_text(found.runs), table(statistics(study, found), paint));
-  }
-  text += found.false_alarms == 0
-              ? fmt::format("False alarms: none in {}\n", runs_text(found.runs))
-              : paint.yellow(fmt::format("False alarms: {} in {} of {}", found.false_alarms,
-                                         found.runs_with_false_alarm, runs_text(found.runs))) +
-                    "\n";
-  // With one mode only, it is monitored whenever no fault is proven, also while one acts that is
-  // too small to be.
-  if (found.runs_with_wrong_mode > 0 && found.modes.size() > 1) {
-    text += paint.yellow(fmt::format("A wrong mode: in {} of {}", found.runs_with_wrong_mode,
-                                     runs_text(found.runs))) +
-            "\n";
-  }
-  if (const auto& excluded = found.true_mode_excluded) {
-    text += paint.red(fmt::format(
-                "True mode excluded: {} at {}, although true since {} (run {} of {})",
-                name_of(found.modes, excluded->mode), time_text(study.labels, excluded->k),
-                time_text(study.labels, excluded->since), excluded->seed_offset + 1, found.runs)) +
-            "\n";
-  } else {
-    text += "True mode excluded: never\n";
-  }
-  return text;
 }
 
 /// Like the widths of observers: as many digits as it takes to compare.
@@ -241,7 +184,7 @@ std::string error_set_text(const ErrorSetCheck& check, const Names& modes) {
   if (check.mode >= 0 && check.observer >= 0) {
     steady = fmt::format(
         "; in steady state {:.4g}, attained in mode \"{}\" by the observer of \"{}\"",
-        check.steady_factor, name_of(modes, check.mode), name_of(modes, check.observer));
+        check.steady_factor, mode_name(modes, check.mode), mode_name(modes, check.observer));
   }
   if (check.computed)
     return fmt::format("Error set: computed; contains the errors by construction{}\n", steady);
@@ -333,7 +276,7 @@ std::string diagnosis_violation(const Labels& labels, const PipelineOutcome& pip
       "plant has been since {} "
       "(seed offset {}). This is a defect of its backend or diagnoser",
       pipeline.name, time_text(labels, excluded.k),
-      name_of(pipeline.diagnosis()->modes, excluded.mode), time_text(labels, excluded.since),
+      mode_name(pipeline.diagnosis()->modes, excluded.mode), time_text(labels, excluded.since),
       excluded.seed_offset);
 }
 
@@ -341,7 +284,7 @@ std::string guarantees_text(const Guarantees& guarantees, const Labels& labels, 
                             const Paint& paint) {
   Rows rows{{"OBSERVER", "TRUE MODE", "RESIDUALS", "CONDITION", "HOLDS"}};
   for (const PairGuarantee& pair : guarantees.pairs) {
-    rows.push_back({name_of(modes, pair.observer), name_of(modes, pair.mode),
+    rows.push_back({mode_name(modes, pair.observer), mode_name(modes, pair.mode),
                     fmt::format("R̊{}{} = {}", pair.mode, pair.observer,
                                 box_text(pair.residual, Digits::decimals)),
                     pair.mode == pair.observer ? "0 inside" : "0 outside",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observer_report.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -13,7 +14,7 @@ using nlohmann::ordered_json;
 using Rows = std::vector<std::vector<std::string>>;
 
 constexpr Index most_states = 8;  // beside each other
-constexpr Index most_rows = 30;
+constexpr Index most_width_rows = 30;
 constexpr std::size_t longest_matrix = 60;
 
 std::string titled(const std::string& title, const Rows& rows, const Paint& paint) {
@@ -53,7 +54,8 @@ constexpr double optimum_share = 1e-3;
 
 std::string objective_text(const GainCertificate& known) {
   if (known.objective.empty()) return "-";
-  const std::string text = fmt::format("{} = {}", known.objective, number_text(known.optimum));
+  std::string text = fmt::format("{} = {}", known.objective, number_text(known.optimum));
+  if (known.margin < 0) return text + fmt::format(", not shown: missed by {:.2g}", -known.margin);
   // the least value, as far as it is known: said where it may be less
   const bool is_close = !(known.optimum_bound < known.optimum * (1 - optimum_share));
   return is_close ? text : text + fmt::format(", least ≥ {}", number_text(known.optimum_bound));
@@ -75,6 +77,22 @@ std::string missed_text(const Labels& labels, const Contradiction& found) {
 
 std::string state_name(const Labels& labels, Index i) {
   return labels.states.empty() ? fmt::format("x{}", i + 1) : label_of(labels.states, "x", i);
+}
+
+/// How many samples, and what became of the first of them.
+std::string outliers_text(const Labels& labels, const std::string& name,
+                          const EstimationOutcome& found) {
+  const auto told = std::min<std::int64_t>(3, std::ssize(found.left_out));
+  std::string text =
+      fmt::format("{}: outputs of {} left out as outliers, assumed not to keep to V:", name,
+                  count(found.outliers, "sample"));
+  for (std::int64_t i = 0; i < told; ++i) {
+    const Contradiction& worst = found.left_out[static_cast<std::size_t>(i)].worst;
+    text += fmt::format("{} at {} {}", i > 0 ? ";" : "", time_text(labels, worst.k),
+                        missed_text(labels, worst));
+  }
+  if (found.outliers > told) text += fmt::format("; and {} more", found.outliers - told);
+  return text + "\n";
 }
 
 }  // namespace
@@ -114,13 +132,7 @@ std::string contradictions_text(const Study& study, const RunOutcome& outcome, c
           pipeline.name,
           found.restarts == 1 ? "begun once" : fmt::format("begun {} times", found.restarts));
     }
-    if (found.outliers == 0) continue;
-    const LeftOut& one = found.left_out.front();
-    text += fmt::format(
-        "{}: outputs of {} left out as outliers, assumed not to keep to V; the first at {}, where "
-        "{}\n",
-        pipeline.name, count(found.outliers, "sample"), time_text(labels, one.worst.k),
-        missed_text(labels, one.worst));
+    if (found.outliers > 0) text += outliers_text(labels, pipeline.name, found);
   }
   return text;
 }
@@ -157,7 +169,7 @@ std::string widths_text(const RunOutcome& outcome, const Labels& labels, const P
     if (n > 0) shown.push_back(&pipeline);
   }
   const bool across = states <= most_states;  // a row per pipeline, else one per state
-  const Index listed = across ? states : std::min(states, most_rows);
+  const Index listed = across ? states : std::min(states, most_width_rows);
   Rows rows{{across ? "PIPELINE" : "STATE"}};
   for (Index i = 0; i < listed; ++i) {
     if (across) {

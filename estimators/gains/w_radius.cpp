@@ -25,7 +25,8 @@ with
   [ WA - YC   W Bw G_W  -Y Dv G_V  W Eθ  W  ]
 
 and then L = W⁻¹Y. τ is maximised: the errors stay in the ellipsoid eᵀWe ≤ 1 once they are there,
-whose longest half axis is 1/√τ at most, and come to it by a factor ρ per step (of eᵀWe). G_W and
+whose longest half axis is 1/√τ at most, and come to it by a factor ρ per step (of eᵀWe), if the
+solution satisfies the inequality (its `margin` is not negative). G_W and
 G_V are the generators of zonotopes around W and V, C is taken with the middle of the sensors'
 effectiveness.
 

@@ -13,7 +13,7 @@ namespace {
 
 using Kind = DiagnosisEvent::Kind;
 
-/// What a diagnoser of three modes says from k on. `since` equal to that k: a reset at k, with
+/// What a diagnoser says from k on. `since` equal to that k: a reset at k, with
 /// evidence of the time before. `out`: modes that are no candidates; `no`: contradicted by that one
 /// step.
 struct Says {
@@ -38,7 +38,8 @@ struct Result {
   std::vector<ModeStatistics> statistics;
 };
 
-Result play(Index steps, const std::vector<True>& truths, const std::vector<Says>& says) {
+Result play(Index steps, const std::vector<True>& truths, const std::vector<Says>& says,
+            std::size_t modes = 3) {
   Result result;
   DiagnosisTally tally;
   DiagnosisScore score([&](const DiagnosisSegment& segment) {
@@ -56,7 +57,7 @@ Result play(Index steps, const std::vector<True>& truths, const std::vector<Says
     now.mode = says[at].mode;
     now.reset = at > 0 && says[at].since == k;
     now.since = says[now.reset ? at - 1 : at].since;
-    now.modes.resize(3);
+    now.modes.resize(modes);
     for (const Index j : says[at].out) now.modes[static_cast<std::size_t>(j)].candidate = false;
     if (says[at].k == k) {
       for (const Index j : says[at].no)
@@ -284,6 +285,19 @@ TEST_CASE("a mode that is detected and isolated again in one step") {
   CHECK(r.false_alarms == 1);
   CHECK(r.events[2].what == Kind::detected);
   CHECK(r.events.back().what == Kind::isolated);
+}
+
+TEST_CASE("the only mode of a bank is resumed, which isolates nothing and is no wrong mode") {
+  const std::vector<True> truths = {{0, 0}, {5, -1}};
+  const std::vector<Says> says = {{0, Decision::monitoring, 0, 0, {}, {}},
+                                  {7, Decision::unknown_fault, -1, 7, {}, {0}},
+                                  {9, Decision::monitoring, 0, 9, {}, {}}};
+  const Result one = play(12, truths, says, 1), three = play(12, truths, says);
+  CHECK(one.events.back().what == Kind::resumed);
+  CHECK(three.events.back().what == Kind::isolated);
+  CHECK_FALSE(one.wrong);
+  CHECK(three.wrong);
+  CHECK(one.segments.back().unknown_fault_at == 7);
 }
 
 TEST_CASE("outside the bank, exclusions that go round are told once") {

@@ -95,6 +95,7 @@ TEST_CASE("the timeline: one line per event, with its evidence") {
       "1 / 1.5 / 3      2 / 2 / 9\n"
       "outside the bank  60     60        -         -             0           57             "
       "1 / 1 / 1        3 / 3 / 4\n"
+      "Outside the bank, the isolation delay is that to unknown_fault\n"
       "\n"
       "False alarms: 3 in 2 of 60 runs\n"
       "True mode excluded: never\n");
@@ -203,6 +204,14 @@ std::vector<Gain> two_gains() {
 }
 
 }  // namespace
+
+TEST_CASE("an optimum whose inequality is missed is not told as shown") {
+  RunOutcome outcome;
+  outcome.pipelines.resize(1);
+  outcome.pipelines[0].estimation()->gains = {two_gains()[0]};
+  outcome.pipelines[0].estimation()->gains[0].certificate.margin = -6.25e-14;
+  CHECK(has(apps::report_text(study(), outcome, "out"), "γ = 2.5, not shown: missed by 6.2e-14"));
+}
 
 TEST_CASE(
     "gains, widths at the end and inner estimates have a table each, and only where there are "

@@ -13,6 +13,17 @@ namespace {
 using Names = std::vector<std::string>;
 using Layout = JsonWriter::Layout;
 
+void write(JsonWriter& json, const JudgedBound& judged) {
+  const FaultBound& bound = judged.bound;
+  json.begin_object()
+      .member("fault", bound.fault + 1)
+      .member("at", bound.at)
+      .member("lower", bound.lower);
+  json.member("upper", bound.upper).member("estimate", bound.estimate);
+  if (judged.truth) json.member("truth", *judged.truth);
+  json.end_object();
+}
+
 void write(JsonWriter& json, const DiagnosisEvent& event, const Names& modes) {
   using Kind = DiagnosisEvent::Kind;
   json.begin_object().member("k", event.k).member("what", to_string(event.what));
@@ -20,6 +31,11 @@ void write(JsonWriter& json, const DiagnosisEvent& event, const Names& modes) {
   if (event.what == Kind::detected || event.what == Kind::excluded) {
     json.key("evidence");
     write(json, event.evidence);
+  }
+  if (!event.faults.empty()) {
+    json.key("faults").begin_array();
+    for (const FaultBound& bound : event.faults) write(json, JudgedBound{bound, {}});
+    json.end_array();
   }
   json.end_object();
 }
@@ -62,17 +78,6 @@ void write_list(JsonWriter& json, std::string_view key, const Items& items, cons
   json.key(key).begin_array(items.empty() ? Layout::line : Layout::lines);
   for (const auto& item : items) write(json, item, modes);
   json.end_array();
-}
-
-void write(JsonWriter& json, const JudgedBound& judged) {
-  const FaultBound& bound = judged.bound;
-  json.begin_object()
-      .member("fault", bound.fault + 1)
-      .member("at", bound.at)
-      .member("lower", bound.lower);
-  json.member("upper", bound.upper).member("estimate", bound.estimate);
-  if (judged.truth) json.member("truth", *judged.truth);
-  json.end_object();
 }
 
 void write(JsonWriter& json, const FaultStatistics& counts) {
@@ -236,6 +241,8 @@ std::string_view to_string(DiagnosisEvent::Kind kind) noexcept {
       return "excluded";
     case DiagnosisEvent::Kind::isolated:
       return "isolated";
+    case DiagnosisEvent::Kind::resumed:
+      return "resumed";
     case DiagnosisEvent::Kind::isolating:
       return "isolating";
     case DiagnosisEvent::Kind::ambiguous:

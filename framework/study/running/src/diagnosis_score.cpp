@@ -2,6 +2,7 @@
 #include "study/running/diagnosis_score.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace cordon::detail {
 
@@ -11,15 +12,23 @@ void first_at(Index& time, Index k) {
   if (time < 0) time = k;
 }
 
+std::vector<FaultBound> without_0(const std::vector<FaultBound>& bounds) {
+  std::vector<FaultBound> found;
+  std::copy_if(bounds.begin(), bounds.end(), std::back_inserter(found),
+               [](const FaultBound& bound) { return bound.lower > 0 || bound.upper < 0; });
+  return found;
+}
+
 /// The time from which on the exclusions of this step speak. Bounds of additive faults speak of a
 /// time that may lie before.
 Index since_of(const Diagnosis& now) {
   Index since = now.since;
-  for (const FaultBound& bound : now.faults) {
-    if (bound.lower > 0 || bound.upper < 0) since = std::min(since, bound.at);
-  }
+  for (const FaultBound& bound : without_0(now.faults)) since = std::min(since, bound.at);
   return since;
 }
+
+/// In a bank of one mode nothing is excluded when that mode is monitored again.
+bool names_modes(const Diagnosis& now) { return now.modes.size() > 1; }
 
 }  // namespace
 
@@ -70,7 +79,7 @@ void DiagnosisScore::judge_segment(const Diagnosis& now) {
   if (now.decision != Decision::monitoring) return;
   if (now.mode == segment_->mode) {
     first_at(segment_->isolated_at, now.k);
-  } else if (!watching_) {
+  } else if (!watching_ && names_modes(now)) {
     first_at(segment_->wrong_at, now.k);
   }
 }
@@ -106,7 +115,7 @@ void DiagnosisTimeline::step(const std::optional<Index>& truth, const Diagnosis&
   if (given_up || now.decision != before_->decision) {
     switch (now.decision) {
       case Decision::monitoring:
-        tell({now.k, Kind::isolated, now.mode, {}});
+        tell({now.k, names_modes(now) ? Kind::isolated : Kind::resumed, now.mode, {}});
         break;
       case Decision::isolating:
         if (!given_up) tell({now.k, Kind::isolating, -1, {}});  // else it is what `detected` says
@@ -123,24 +132,28 @@ void DiagnosisTimeline::step(const std::optional<Index>& truth, const Diagnosis&
 }
 
 void DiagnosisTimeline::exclusions(const Diagnosis& now,
-                                   const std::function<void(DiagnosisEvent)>& tell) const {
+                                   const std::function<void(DiagnosisEvent)>& tell) {
   using Kind = DiagnosisEvent::Kind;
   const bool given_up = before_->is_given_up_in(now);
-  const auto of = [&](std::size_t j) {
-    return j < now.modes.size() ? now.modes[j] : ModeEvidence{};
-  };
-  if (given_up)
-    tell({now.k, Kind::detected, before_->mode, of(static_cast<std::size_t>(before_->mode))});
-  // outside the bank all modes are excluded again and again: said once
-  if (before_->decision == Decision::unknown_fault && now.decision == Decision::unknown_fault)
-    return;
+  if (given_up) {
+    const auto j = static_cast<std::size_t>(before_->mode);
+    tell({now.k, Kind::detected, before_->mode,
+          j < now.modes.size() ? now.modes[j] : ModeEvidence{}, without_0(now.faults)});
+  }
+  // outside the bank all modes are excluded again and again: told only if they lead elsewhere
+  const bool was_outside = before_->decision == Decision::unknown_fault,
+             is_outside = now.decision == Decision::unknown_fault;
+  if (was_outside && now.reset) untold_.clear();
   for (std::size_t j = 0; j < now.modes.size(); ++j) {
     if (given_up && static_cast<Index>(j) == before_->mode) continue;
     // after a reset all modes are candidates again: what it rests on is told by the evidence
     const bool gone = now.reset ? now.modes[j].consistent == Answer::no : !now.modes[j].candidate;
     if (gone && before_->candidate[j])
-      tell({now.k, Kind::excluded, static_cast<Index>(j), now.modes[j]});
+      untold_.push_back({now.k, Kind::excluded, static_cast<Index>(j), now.modes[j]});
   }
+  if (was_outside && is_outside) return;
+  for (DiagnosisEvent& event : untold_) tell(std::move(event));
+  untold_.clear();
 }
 
 void DiagnosisTally::add(const DiagnosisSegment& segment) {

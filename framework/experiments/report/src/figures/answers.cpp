@@ -47,6 +47,11 @@ std::string assumptions_of(const RunFiles& files, const Cursor& pipeline, const 
     text = "initial set of " + size_of(*initial);
   if (const auto admissible = object_of(*assumptions, "admissible_set"))
     text += "; admissible set of " + size_of(*admissible);
+  if (const auto outliers = object_of(summary, "outliers"))
+    text +=
+        "; outputs of " + shown(value_of(*outliers, "samples"), 15) + " samples not keeping to V";
+  if (const double restarts = value_of(summary, "restarts"); !std::isnan(restarts))
+    text += "; the state in the restart set, " + shown(restarts, 15) + " times";
   const double until = value_of(summary, "assumptions_until");
   return std::isnan(until) ? text : text + "; left at " + time_of(files, until);
 }
@@ -101,7 +106,8 @@ void add_gains(const RunFiles& files, Report& report) {
                                                 shown(value_of(*norm, "upper")))
                                   : "–",
                              false, 0, true},
-                            text_cell(text_of(gain, "objective")),
+                            text_cell(text_of(gain, "objective") +
+                                      (value_of(gain, "margin") < 0 ? ", not shown" : "")),
                             number_cell(value_of(gain, "optimum"), 6),
                             number_cell(value_of(gain, "optimum_bound"), 6)});
     }

@@ -27,15 +27,17 @@ struct DiagnosisEvent {
     starts,        ///< the first decision; `mode` if it is `monitoring`
     detected,      ///< `mode` was monitored, and is excluded
     excluded,      ///< so is `mode`
-    isolated,      ///< `mode` is monitored from now on
+    isolated,      ///< `mode` is monitored from now on: all others are excluded
+    resumed,       ///< `mode`, the only one of the bank, is monitored again: it is not excluded
     isolating,     ///< several modes are possible again
     ambiguous,     ///< several are left after the waiting time
     unknown_fault  ///< none is
   };
   Index k = 0;
   Kind what = Kind::truth;
-  Index mode = -1;        ///< index in the bank
-  ModeEvidence evidence;  ///< detected, excluded: of that mode at k
+  Index mode = -1;                      ///< index in the bank
+  ModeEvidence evidence;                ///< detected, excluded: of that mode at k
+  std::vector<FaultBound> faults = {};  ///< detected: bounds of additive faults without 0
 };
 std::string_view to_string(DiagnosisEvent::Kind kind) noexcept;
 

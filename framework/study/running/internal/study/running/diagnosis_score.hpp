@@ -65,10 +65,12 @@ class DiagnosisTimeline {
             const std::function<void(DiagnosisEvent)>& tell);
 
  private:
-  void exclusions(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell) const;
+  void exclusions(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell);
 
   std::optional<DiagnosisBefore> before_;
   std::optional<Index> truth_;
+  /// Exclusions since the last reset outside the bank, told when they lead to another decision.
+  std::vector<DiagnosisEvent> untold_;
 };
 
 using Delays = std::map<std::int64_t, std::int64_t>;  ///< how often each delay occurred
