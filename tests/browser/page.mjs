@@ -147,6 +147,22 @@ test('the slider moves through time', async () => {
   await close(page);
 });
 
+test('sets open at the last step that has a picture', async () => {
+  const page = await open(browser, file('every_kind'));
+  const opened = (empty) => page.evaluate((count) => {
+    const figure = structuredClone(data.figures.find(({ id }) => id === 'states'));
+    for (const frame of figure.projection.frames.slice(-count))
+      for (const set of frame.sets) set.x = set.y = set.open = [];
+    const view = projectionView(figure);
+    view.create();
+    const [, slider, output] = view.parts.find((part) => part.className === 'slider').childNodes;
+    return [output.textContent, Number(slider.max) - Number(slider.value)];
+  }, empty);
+  assert.deepEqual(await opened(2), ['k = 9', 2]);
+  assert.deepEqual(await opened(100), ['k = 11', 0]);
+  await close(page);
+});
+
 test('sets are drawn where their coordinates are', async () => {
   const page = await open(browser, file('every_kind'));
   await show(page, 'states');

@@ -277,13 +277,28 @@ TEST_CASE("a projection shows six times, open edges dotted, empty sets in words"
   for (const std::string k : {"k = 0", "k = 2", "k = 4", "k = 6", "k = 8", "k = 11"})
     CHECK(has_text(tree, k));
   CHECK(has_text(tree, "Dotted edges: the set continues beyond the frame."));
-  CHECK(has_text(tree, "second (proven empty at k = 6, 8, 11)"));
+  CHECK(has_text(tree, "second (proven empty from k = 6 on)"));
   CHECK(has_text(tree, "first"));
   CHECK(elements(tree, "polygon").size() == 9);
   std::size_t dotted = 0;
   for (const Tree* line : elements(tree, "line"))
     dotted += attribute(*line, "stroke-dasharray") == "1.5 4";
   CHECK(dotted == 1);
+}
+
+TEST_CASE("a projection shows no time at which all sets are empty") {
+  Projection projection = sample::projection();
+  for (std::size_t k : {1, 2, 9, 10, 11})
+    for (Polygon& set : projection.frames[k].sets) set = {set.pipeline, {}, {}};
+  const Tree tree = drawn(projection);
+  for (const std::string k : {"k = 0", "k = 3", "k = 4", "k = 5", "k = 6", "k = 8"})
+    CHECK(has_text(tree, k));
+  CHECK(has_text(tree, "first (proven empty from k = 9 on)"));
+  projection.frames[11] = sample::projection().frames[11];
+  CHECK(has_text(drawn(projection), "second (proven empty from k = 6 on)"));
+  for (SetFrame& frame : projection.frames)
+    for (Polygon& set : frame.sets) set = {set.pipeline, {}, {}};
+  CHECK(has_text(drawn(projection), "first (proven empty from k = 0 on)"));
 }
 
 TEST_CASE("sets that are points or segments are drawn") {
@@ -337,6 +352,28 @@ TEST_CASE("a table has all its cells, the best ones bold and shaded") {
     shaded += attribute(*rectangle, "fill") == "#0072b2";
   CHECK(bold == 1);
   CHECK(shaded == 2);
+}
+
+TEST_CASE("a long cell of a table is broken, not cut") {
+  std::string text;
+  for (int i = 0; i < 30; ++i) text += (i > 0 ? " × " : "") + std::string("[-0.1717, 0.25]");
+  const Tree tree = drawn(Table{{"residual", "holds"}, {{{text}, {"yes"}}, {{"none"}, {"no"}}}});
+  std::string shown;
+  for (const std::string& line : texts(tree)) shown += line + ' ';
+  CHECK(shown.find("…") == std::string::npos);
+  std::size_t boxes = 0;
+  for (std::size_t at = 0; (at = shown.find("[-0.1717,", at)) != std::string::npos; ++at) ++boxes;
+  CHECK(boxes == 30);
+}
+
+TEST_CASE("a plot whose range is given is cut off there") {
+  Plot plot = Plot{"k", "x", false, {}};
+  plot.series.push_back(
+      {Series::Kind::band, "wide at times", 0, {0, 1, 2}, {-1, -100, -1}, {1, 100, 1}});
+  CHECK_FALSE(has_text(drawn(plot), "0.5"));
+  plot.range = {-1, 1};
+  CHECK(has_text(drawn(plot), "0.5"));
+  CHECK_FALSE(has_text(drawn(plot), "100"));
 }
 
 TEST_CASE("figures without anything in them are drawn") {

@@ -19,11 +19,13 @@ std::string pipeline_field(const Report& report, int pipeline) {
 std::string name_of(Timeline::State state) {
   switch (state) {
     case Timeline::State::candidate:
-      return "candidate";
+      return "possible";
     case Timeline::State::monitored:
       return "monitored";
     case Timeline::State::excluded:
       return "excluded";
+    case Timeline::State::unconsidered:
+      return "not considered";
     case Timeline::State::truth:
       return "truth";
     case Timeline::State::outside:

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -21,6 +23,40 @@ void add_events(const Curves& curves, Plot& plot) {
     plot.marks.push_back({static_cast<double>(event.k), event.text});
 }
 
+/// Where an estimate begins anew after it was empty, its first set may be very wide.
+bool begins_anew(const Curves& curves) {
+  return std::any_of(curves.pipelines.begin(), curves.pipelines.end(),
+                     [](const StepCurves& steps) { return steps.empty_from.size() > 1; });
+}
+
+constexpr double much_wider = 20;
+
+/// The range of what is no more than `much_wider` times as wide as the median; none if all is.
+std::optional<std::pair<double, double>> range_but_for_wide_bands(const Plot& plot) {
+  std::vector<double> widths;
+  const auto width_at = [](const Series& series, std::size_t i) {
+    return series.upper.empty() ? 0.0 : series.upper[i] - series.y[i];
+  };
+  for (const Series& series : plot.series) {
+    for (std::size_t i = 0; i < series.upper.size(); ++i) {
+      if (std::isfinite(width_at(series, i))) widths.push_back(width_at(series, i));
+    }
+  }
+  if (widths.empty()) return std::nullopt;
+  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+  std::nth_element(widths.begin(), middle, widths.end());
+  double lower = infinity, upper = -infinity;
+  for (const Series& series : plot.series) {
+    for (std::size_t i = 0; i < series.y.size(); ++i) {
+      if (!(width_at(series, i) <= much_wider * *middle)) continue;
+      lower = std::min(lower, series.y[i]);
+      upper = std::max(upper, series.upper.empty() ? series.y[i] : series.upper[i]);
+    }
+  }
+  if (!std::isfinite(upper - lower)) return std::nullopt;
+  return std::pair(lower, upper);
+}
+
 Plot bounds_of(const RunFiles& files, const Curves& curves, std::size_t i) {
   Plot plot{"k", axis_of(files.labels().states, "x", i), false, {}};
   for (std::size_t p = 0; p < curves.pipelines.size(); ++p) {
@@ -33,14 +69,19 @@ Plot bounds_of(const RunFiles& files, const Curves& curves, std::size_t i) {
       inner.shade = 1;
       plot.series.push_back(std::move(inner));
     }
-    for (const std::int64_t k : steps.empty_from) {
-      plot.marks.push_back(
-          {static_cast<double>(k), "empty from " + time_text(files.labels(), k), pipeline});
-    }
+    if (steps.empty_from.empty()) continue;
+    const std::int64_t k = steps.empty_from.front();
+    const std::string when = time_text(files.labels(), k);
+    plot.marks.push_back({static_cast<double>(k),
+                          steps.empty_from.size() == 1 ? "empty from " + when
+                                                       : fmt::format("empty {} times, first at {}",
+                                                                     steps.empty_from.size(), when),
+                          pipeline});
   }
   if (i < curves.truth.size() && curves.truth[i].has_values())
     plot.series.push_back(curves.truth[i].line("true state", of_data));
   add_events(curves, plot);
+  if (begins_anew(curves)) plot.range = range_but_for_wide_bands(plot);
   return plot;
 }
 
@@ -111,6 +152,12 @@ void add_bounds(const RunFiles& files, const Curves& curves, Report& report) {
     caption +=
         " Inner bands are reached by some trajectory: what lies between them and the bounds is the "
         "price of enclosing.";
+  if (begins_anew(curves)) {
+    caption += fmt::format(
+        " What is more than {} times as wide as usual, as where an estimate begins anew, goes on "
+        "beyond the frame.",
+        much_wider);
+  }
   std::vector<Figure> errors, widths;
   Report late;
   for (std::size_t i = 0; i < curves.states; ++i) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the observers saw: inputs and outputs over time, with their gaps.
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -69,19 +70,30 @@ class LeftOut {
     }
   }
 
-  /// Appends those of output i; are there any?
+  /// Appends those of output i; are there any? Pipelines that leave out the same samples share
+  /// their marks, which would hide each other.
   bool append(std::size_t i, Plot& plot) {
-    bool any = false;
+    const std::size_t before = plot.series.size();
     for (std::size_t p = 0; p < files_.pipelines().size(); ++p) {
       const auto found = series_.find({i, p});
       if (found == series_.end()) continue;
+      const std::string& name = files_.pipelines()[p].name;
+      const auto begin = plot.series.begin() + static_cast<std::ptrdiff_t>(before);
+      const auto same = std::find_if(begin, plot.series.end(), [&](const Series& series) {
+        return series.x == found->second.x;
+      });
+      if (same != plot.series.end()) {
+        same->name += ", " + name;
+        same->pipeline = of_data;
+        same->shade = 1;
+        continue;
+      }
       found->second.kind = Series::Kind::points;
-      found->second.name = "left out by " + files_.pipelines()[p].name;
+      found->second.name = "left out by " + name;
       found->second.pipeline = static_cast<int>(p);
       plot.series.push_back(std::move(found->second));
-      any = true;
     }
-    return any;
+    return plot.series.size() > before;
   }
 
  private:

@@ -48,11 +48,9 @@ std::vector<Mark> marks_of(const RunFiles& files, std::size_t pipeline) {
     if (what == "truth") {
       marks.push_back({value_of(event, "k"), "truth: " + name_of(mode), of_data});
     } else {
-      const bool names_mode = what == "detected" || what == "isolated";
-      std::string text = what == "detected"        ? "excluded"
-                         : what == "unknown_fault" ? "unknown fault"
-                                                   : what;
-      if (names_mode) text += ": " + mode;
+      std::string text = what == "unknown_fault" ? "unknown fault" : what;
+      if (what == "detected") text += ": departure from " + mode;
+      if (what == "isolated" || what == "resumed") text += ": " + mode;
       marks.push_back({value_of(event, "k"), text, static_cast<int>(pipeline)});
     }
   }
@@ -78,7 +76,8 @@ void add_timeline(const RunFiles& files, const DiagnosisTable& table,
                             fmt::format("Modes: {}", files.pipelines()[p].name),
                             "Which modes are possible, which one is monitored, and the true mode, "
                             "in the first seed. A mode is excluded "
-                            "on a proof.",
+                            "on a proof; it is not considered where the study begins in another "
+                            "one.",
                             std::move(timeline), static_cast<int>(p)});
 }
 

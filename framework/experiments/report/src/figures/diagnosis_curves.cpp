@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "figures/columns.hpp"
@@ -74,6 +75,8 @@ class DiagnosisReader {
     out_.fault_truth.assign(out_.faults, curve);
     fault_told_.assign(out_.faults, -1);
     open_.assign(pipelines, std::vector<std::size_t>(out_.modes + 1, none));
+    last_bound_.assign(pipelines, std::vector<std::int64_t>(out_.faults, -1));
+    considered_.assign(pipelines, std::vector<bool>(out_.modes));
   }
 
   void add(std::size_t pipeline) {
@@ -82,14 +85,19 @@ class DiagnosisReader {
     const auto k = static_cast<double>(table_.integer(k_));
     const std::int64_t monitored = mode_of(mode_), truth = mode_of(truth_);
     for (std::size_t j = 0; j < modes_.size(); ++j) {
-      const bool candidate = table_.text(modes_[j].candidate) == "1";
-      const auto state = static_cast<std::int64_t>(j) == monitored ? Timeline::State::monitored
-                         : candidate                               ? Timeline::State::candidate
-                                                                   : Timeline::State::excluded;
+      const bool is_candidate = table_.text(modes_[j].candidate) == "1",
+                 is_monitored = static_cast<std::int64_t>(j) == monitored;
+      considered_[pipeline][j] = considered_[pipeline][j] || is_candidate || is_monitored;
+      Timeline::State state = Timeline::State::excluded;
+      if (!considered_[pipeline][j]) state = Timeline::State::unconsidered;
+      if (is_candidate) state = Timeline::State::candidate;
+      if (is_monitored) state = Timeline::State::monitored;
       extend(curves, open_[pipeline][j], {j, k, k, state}, curves.spans);
       for (std::size_t i = 0; i < out_.outputs; ++i) {
-        curves.residuals[j][i].add(k, table_.number(modes_[j].lower[i]),
-                                   table_.number(modes_[j].upper[i]));
+        double lower = table_.number(modes_[j].lower[i]), upper = table_.number(modes_[j].upper[i]);
+        if (lower == -infinity && upper == infinity)  // a missing output: nothing is said
+          lower = upper = std::numeric_limits<double>::quiet_NaN();
+        curves.residuals[j][i].add(k, lower, upper);
       }
     }
     if (!table_.text(truth_).empty()) {
@@ -99,13 +107,20 @@ class DiagnosisReader {
               outside ? Timeline::State::outside : Timeline::State::truth},
              curves.truth);
     }
-    for (std::size_t i = 0; i < out_.faults; ++i) add_fault(curves, i);
+    for (std::size_t i = 0; i < out_.faults; ++i) add_fault(curves, pipeline, i);
   }
 
-  void add_fault(DiagnosisCurves& curves, std::size_t i) {
+  void add_fault(DiagnosisCurves& curves, std::size_t pipeline, std::size_t i) {
     if (table_.text(faults_[0][i]).empty()) return;
     const std::int64_t at = table_.integer(faults_[0][i]);
     const auto x = static_cast<double>(at);
+    std::int64_t& last = last_bound_[pipeline][i];
+    if (last >= 0 && at > last + 1) {  // nothing is said of the times between
+      constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+      curves.faults[i].add(static_cast<double>(last + 1), nothing, nothing);
+      curves.fault_estimates[i].add(static_cast<double>(last + 1), nothing);
+    }
+    last = at;
     curves.faults[i].add(x, table_.number(faults_[1][i]), table_.number(faults_[3][i]));
     curves.fault_estimates[i].add(x, table_.number(faults_[2][i]));
     if (at <= fault_told_[i]) return;  // an earlier pipeline has told it
@@ -140,6 +155,8 @@ class DiagnosisReader {
   std::vector<std::int64_t> fault_told_;
   std::vector<std::vector<std::size_t>>
       open_;  ///< by pipeline, by mode: its last span; the last one: that of the truth
+  std::vector<std::vector<std::int64_t>> last_bound_;  ///< by pipeline, by fault: the latest time
+  std::vector<std::vector<bool>> considered_;          ///< by pipeline, by mode: so far
 };
 
 }  // namespace

@@ -117,6 +117,8 @@ void write(JsonWriter& json, const Plot& plot) {
     if (std::isfinite(value))
       json.begin_object().member("name", name).member("value", value).end_object();
   }
+  json.end_array().key("range").begin_array();
+  if (plot.range) json.value(plot.range->first).value(plot.range->second);
   json.end_array().key("marks").begin_array();
   for (const Mark& mark : plot.marks) {
     if (!std::isfinite(mark.x)) continue;

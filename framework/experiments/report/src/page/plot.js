@@ -16,6 +16,7 @@ function valueRange(plot) {
     series.upper.forEach(count);
   }
   for (const threshold of plot.thresholds) count(threshold.value);
+  if (plot.range.length > 0) [lower, upper] = plot.range;
   if (lower > upper) return plot.log_y ? [0.1, 10] : [0, 1];
   if (plot.log_y) {
     const margin = lower === upper ? 2 : (upper / lower) ** 0.05;

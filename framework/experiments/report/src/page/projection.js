@@ -73,10 +73,13 @@ function projectionNumbers(projection, frames) {
 
 function projectionView(figure) {
   const { frames } = figure.projection;
-  let at = frames.length - 1;
+  const last = Math.max(0, frames.length - 1);
+  // Opens where there is something to see: sets that are proven empty at the end have no picture.
+  const seen = frames.findLastIndex((frame) => frame.sets.some((set) => set.x.length > 0));
+  let at = seen < 0 ? last : seen;
   const svg = drawn('svg', { viewBox: `0 0 ${stageWidth} ${stageHeight}`, role: 'img' });
   const told = element('p', { class: 'told', 'aria-live': 'polite' });
-  const slider = element('input', { type: 'range', min: 0, max: Math.max(0, at), step: 1, value: at, 'aria-label': `Time k of ${figure.title}` });
+  const slider = element('input', { type: 'range', min: 0, max: last, step: 1, value: at, 'aria-label': `Time k of ${figure.title}` });
   const output = element('output');
   const numbers = numbersPart(figure, () => projectionNumbers(figure.projection, frames), () => projectionNumbers(figure.projection, [frames[at]]));
   let created = false;

@@ -53,6 +53,8 @@ std::string_view name_of(Timeline::State state) {
       return "monitored";
     case Timeline::State::excluded:
       return "excluded";
+    case Timeline::State::unconsidered:
+      return "not considered";
     case Timeline::State::truth:
       return "true mode";
     case Timeline::State::outside:
@@ -112,9 +114,10 @@ void draw_marks(Drawing& drawing, std::vector<Mark> marks, const Axis& x, double
                 double bottom) {
   std::stable_sort(marks.begin(), marks.end(),
                    [](const Mark& a, const Mark& b) { return a.x < b.x; });
+  std::erase_if(marks, [&](const Mark& m) { return !(m.x >= x.lower && m.x <= x.upper); });
   std::array<double, 3> used = {-INFINITY, -INFINITY, -INFINITY};
+  std::vector<std::pair<const Mark*, Point>> texts;  // above the lines of all of them
   for (const Mark& mark : marks) {
-    if (!(mark.x >= x.lower && mark.x <= x.upper)) continue;
     const double half = text_width(mark.text) / 2 + 4;
     const double centre =
         std::clamp(x(mark.x), x.begin + half - 40, std::max(x.begin + half - 40, x.end - half + 8));
@@ -126,13 +129,17 @@ void draw_marks(Drawing& drawing, std::vector<Mark> marks, const Axis& x, double
         {x(mark.x), top - above}, {x(mark.x), bottom},
         fmt::format("class=\"axis\" stroke=\"{}\" stroke-opacity=\"0.6\" stroke-dasharray=\"3 3\"",
                     colour_of(mark.pipeline)));
-    if (row < used.size()) {
-      used[row] = centre + half;
-      const std::string fill = mark.pipeline == of_data
-                                   ? std::string(soft)
-                                   : "fill=\"" + colour_of(mark.pipeline) + "\"";
-      drawing.text({centre, top - above - 2}, mark.text, at_middle(fill) + " font-size=\"11\"");
-    }
+    drawing.end_group();
+    if (row == used.size()) continue;
+    used[row] = centre + half;
+    texts.push_back({&mark, {centre, top - above - 2}});
+  }
+  for (const auto& [mark, at] : texts) {
+    const std::string fill = mark->pipeline == of_data
+                                 ? std::string(soft)
+                                 : "fill=\"" + colour_of(mark->pipeline) + "\"";
+    drawing.begin_group(owner(mark->pipeline) + "class=\"mark\"");
+    drawing.text(at, mark->text, at_middle(fill) + std::string(halo) + " font-size=\"11\"");
     drawing.end_group();
   }
 }

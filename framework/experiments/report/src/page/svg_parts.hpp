@@ -22,6 +22,9 @@ std::string draw(const Table& table, const Figure& figure);
 inline constexpr std::string_view ink = "class=\"ink\" fill=\"#1b2230\"";
 inline constexpr std::string_view soft = "class=\"soft\" fill=\"#5a6475\"";
 inline constexpr std::string_view rule = "class=\"rule\" stroke=\"#e1e5eb\"";
+/// Of texts that lines may cross.
+inline constexpr std::string_view halo =
+    " stroke=\"#ffffff\" stroke-width=\"3\" stroke-linejoin=\"round\" paint-order=\"stroke\"";
 inline constexpr std::string_view outline = "class=\"axis\" stroke=\"#8a94a5\"";
 
 /// `style` with the text's end, or its middle, at the place.

@@ -131,6 +131,7 @@ std::string draw(const Plot& plot, const Figure& figure) {
     for (const double x : series.x) whole = whole && x == std::floor(x);
   }
   for (const auto& threshold : plot.thresholds) values.push_back(threshold.second);
+  if (plot.range) values = {plot.range->first, plot.range->second};
   const Axis y_axis = axis_over(values, plot.log_y, bottom, top);
   const double left = room_beside(y_axis) + 8;
   const Frame frame{

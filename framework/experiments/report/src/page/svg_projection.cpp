@@ -50,38 +50,66 @@ bool draw_time(Drawing& drawing, const Projection& projection, const SetFrame& t
   return open;
 }
 
-/// Up to six times, the first and the last among them.
+/// Up to six times, the first and the last at which there is something to see among them.
 std::vector<const SetFrame*> chosen_times(const Projection& projection) {
-  const std::size_t count = std::min<std::size_t>(6, projection.frames.size());
-  std::vector<const SetFrame*> times;
-  for (std::size_t i = 0; i < count; ++i) {
-    times.push_back(
-        &projection.frames[count == 1 ? 0 : i * (projection.frames.size() - 1) / (count - 1)]);
+  std::vector<const SetFrame*> seen;
+  for (const SetFrame& time : projection.frames) {
+    const bool any = std::any_of(time.sets.begin(), time.sets.end(),
+                                 [](const Polygon& set) { return !set.x.empty(); });
+    if (any) seen.push_back(&time);
   }
+  if (seen.empty() && !projection.frames.empty()) seen.push_back(&projection.frames.back());
+  const std::size_t count = std::min<std::size_t>(6, seen.size());
+  std::vector<const SetFrame*> times;
+  for (std::size_t i = 0; i < count; ++i)
+    times.push_back(seen[count == 1 ? 0 : i * (seen.size() - 1) / (count - 1)]);
   return times;
 }
 
+/// The set of a pipeline at a time; nullptr if there is none.
+const Polygon* set_of(const SetFrame& time, int pipeline) {
+  const auto at = std::find_if(time.sets.begin(), time.sets.end(),
+                               [&](const Polygon& set) { return set.pipeline == pipeline; });
+  return at == time.sets.end() ? nullptr : &*at;
+}
+
+/// At which of the times drawn a pipeline's set is proven empty, and from when on it remains so.
+std::string empty_times(const Projection& projection, const std::vector<const SetFrame*>& times,
+                        int pipeline) {
+  std::int64_t from = -1;
+  for (const SetFrame& time : projection.frames) {
+    const Polygon* set = set_of(time, pipeline);
+    if (set == nullptr || !set->x.empty()) {
+      from = -1;
+    } else if (from < 0) {
+      from = time.k;
+    }
+  }
+  std::string told;
+  for (const SetFrame* time : times) {
+    const Polygon* set = set_of(*time, pipeline);
+    if (set == nullptr || !set->x.empty() || (from >= 0 && time->k >= from)) continue;
+    told += fmt::format("{}{}", told.empty() ? "at k = " : ", ", time->k);
+  }
+  if (from >= 0) told += fmt::format("{}from k = {} on", told.empty() ? "" : ", ", from);
+  return told.empty() ? "" : " (proven empty " + told + ")";
+}
+
 /// What the pictures cannot show: sets that are proven empty, by name and time.
-std::vector<LegendEntry> legend_of(const std::vector<const SetFrame*>& times,
+std::vector<LegendEntry> legend_of(const Projection& projection,
+                                   const std::vector<const SetFrame*>& times,
                                    const Report& report) {
   std::vector<LegendEntry> entries;
-  bool truth = false;
+  const bool truth =
+      std::any_of(times.begin(), times.end(), [](const SetFrame* time) { return !!time->truth; });
   for (std::size_t i = 0; i < report.pipelines.size(); ++i) {
     const int pipeline = static_cast<int>(i);
-    std::string empty;
-    bool present = false;
-    for (const SetFrame* time : times) {
-      truth = truth || time->truth.has_value();
-      for (const Polygon& set : time->sets) {
-        if (set.pipeline != pipeline) continue;
-        present = true;
-        if (set.x.empty())
-          empty += fmt::format("{}{}", empty.empty() ? " (proven empty at k = " : ", ", time->k);
-      }
-    }
+    const bool present = std::any_of(times.begin(), times.end(), [&](const SetFrame* time) {
+      return set_of(*time, pipeline) != nullptr;
+    });
     if (present)
       entries.push_back({LegendEntry::Kind::line,
-                         report.pipelines[i] + empty + (empty.empty() ? "" : ")"),
+                         report.pipelines[i] + empty_times(projection, times, pipeline),
                          stroke_of(pipeline)});
   }
   if (truth)
@@ -98,7 +126,7 @@ std::string draw(const Projection& projection, const Figure& figure, const Repor
   const std::size_t rows = (times.size() + columns - 1) / columns;
   const double width = static_cast<double>(columns) * (size + gap),
                legend_top = static_cast<double>(rows) * (size + gap) + 20;
-  const std::vector<LegendEntry> legend = legend_of(times, report);
+  const std::vector<LegendEntry> legend = legend_of(projection, times, report);
   Drawing drawing(width, legend_top + draw_legend(nullptr, legend, 12, width - 12, legend_top) + 18,
                   figure.title);
   bool open = false;

@@ -20,6 +20,8 @@ std::string_view style_of(Timeline::State state) {
       return "fill=\"#0072b2\"";
     case Timeline::State::excluded:
       return "fill=\"#8a94a5\" fill-opacity=\"0.22\"";
+    case Timeline::State::unconsidered:
+      return "class=\"axis\" fill=\"none\" stroke=\"#8a94a5\" stroke-dasharray=\"2 4\"";
     case Timeline::State::outside:
       return "fill=\"#d55e00\"";
     case Timeline::State::truth:

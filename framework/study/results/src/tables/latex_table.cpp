@@ -78,6 +78,14 @@ struct Heading {
   std::size_t columns = 1;
 };
 
+/// Where the space after the first word is, of which a percent sign is part.
+std::size_t after_first_word(std::string_view title) {
+  const std::size_t space = title.find(' ');
+  return space != std::string::npos && title.substr(space).starts_with(" %")
+             ? title.find(' ', space + 1)
+             : space;
+}
+
 /// Long titles of numbers take two lines, and a measure spans the multiples of the best beside it:
 /// a page is narrow.
 std::vector<Heading> headings_of(const ComparisonTable& table) {
@@ -85,7 +93,8 @@ std::vector<Heading> headings_of(const ComparisonTable& table) {
   for (std::size_t j = 0; j < table.columns.size(); ++j) {
     const ComparisonColumn& column = table.columns[j];
     const bool spans = j + 1 < table.columns.size() && table.columns[j + 1].relative;
-    const std::size_t middle = column.number && !spans ? column.title.find(' ') : std::string::npos;
+    const std::size_t middle =
+        column.number && !spans ? after_first_word(column.title) : std::string::npos;
     if (column.relative) {
       headings.push_back({"", latex_text(column.title), 0});
     } else if (middle != std::string::npos) {

@@ -47,6 +47,8 @@ struct Plot {
   std::vector<std::pair<std::string, double>> thresholds = {};  ///< horizontal lines with a name
   std::vector<Mark> marks = {};
   std::vector<std::string> x_names = {};  ///< not empty: x = 0, 1, … are these words
+  /// What the vertical axis has to show; more is cut off. Empty: everything.
+  std::optional<std::pair<double, double>> range = {};
 };
 
 /// A convex polygon, counter-clockwise. No vertices: the set is proven empty.
@@ -74,7 +76,8 @@ struct Projection {
 
 /// Which mode is in which state when.
 struct Timeline {
-  enum class State { candidate, monitored, excluded, truth, outside };
+  /// `unconsidered`: the study begins in another mode, and nothing was proven of this one.
+  enum class State { candidate, monitored, excluded, unconsidered, truth, outside };
   struct Span {
     std::size_t row = 0;
     double from = 0, to = 0;  ///< both included
