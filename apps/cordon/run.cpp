@@ -132,8 +132,9 @@ void add_run(CLI::App& app, Program& program) {
   const auto arguments = std::make_shared<RunArguments>();
   command->add_option("STUDY", arguments->study, "Study file (JSON)")->required()->option_text(" ");
   command
-      ->add_option("--out", arguments->out,
-                   "Directory for the results [results/<name of the study>]")
+      ->add_option(
+          "--out", arguments->out,
+          "Directory for the results, in place of earlier ones [results/<name of the study>]")
       ->check(CLI::Validator(path_problem, "", ""))
       ->option_text("DIR");
   command->add_flag("--json", arguments->json, "Print JSON for programs instead of tables");

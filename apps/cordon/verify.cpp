@@ -94,6 +94,12 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
           "refute them, or not at all where model and data leave no state\n",
           p.exact_claims_unproven, p.name);
     }
+    if (p.by_supports > 0) {
+      passed_over += fmt::format(
+          "evidence only: {} steps of {} are held against the exact set along directions; whole, "
+          "that set is too large\n",
+          p.by_supports, p.name);
+    }
     rows.push_back({p.name, p.backend, std::string(to_string(p.rounding)), std::to_string(p.steps),
                     std::to_string(p.by_polytopes), std::to_string(p.by_supports),
                     std::to_string(p.proofs), std::to_string(p.exact_claims),
@@ -208,9 +214,14 @@ Exit verify(VerifyArguments& arguments) {
     complain(fmt::format("{} checks could not be decided; all others hold", open));
     return Exit::unanswered;
   }
-  const bool any = std::any_of(outcome.pipelines.begin(), outcome.pipelines.end(), is_checked);
-  if (!arguments.quiet && !arguments.json && (any || outcome.pipelines.empty()))
-    print(final_text(outcome));
+  const bool any = std::any_of(
+      outcome.pipelines.begin(), outcome.pipelines.end(),
+      [](const VerifiedPipeline& p) { return is_checked(p) || !p.failed_assumption.empty(); });
+  if (!any && !outcome.pipelines.empty()) {
+    complain("nothing was checked: estimates and designs are, and there are none among these");
+    return Exit::unanswered;
+  }
+  if (!arguments.quiet && !arguments.json) print(final_text(outcome));
   return Exit::done;
 }
 
@@ -257,7 +268,7 @@ void add_verify(CLI::App& app, Program& program) {
       "loaded.\n"
       "Exit code 4 and the first violation if a claim is false, or the first question on which "
       "cddlib does not agree; 5 if\n"
-      "a check could not be decided.");
+      "a check could not be decided, or nothing was checked.");
   command->callback([&program, arguments] { program.exit = verify(*arguments); });
 }
 

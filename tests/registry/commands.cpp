@@ -196,7 +196,7 @@ TEST_CASE("usage errors are invalid input; help and version are not") {
   const Outcome help = cordon_with("--help");
   CHECK(help.code == 0);
   CHECK(help.err.empty());
-  CHECK(contains(help.out, "3    a plugin was refused or failed"));
+  CHECK(contains(help.out, "3    a plugin that is needed was refused, or failed"));
   const Outcome version = cordon_with("--version");
   CHECK(version.code == 0);
   CHECK(contains(version.out, "cordon "));

@@ -55,8 +55,7 @@ TEST_CASE("lines, with and without their ends") {
   REQUIRE(again.line(text, 10));
   REQUIRE(again.line(text, 10));
   CHECK_THROWS_WITH_AS(again.line(text, 199'999),
-                       doctest::Contains("(line 3): a line is longer than 199999 bytes"),
-                       InputError);
+                       doctest::Contains("line 3: a line is longer than 199999 bytes"), InputError);
 }
 
 TEST_CASE("a file is read up to its limit") {

@@ -164,6 +164,8 @@ TEST_CASE("every refusal says where and why") {
       {"{\"a\": {\"b\" 1}}", "/a/b", 1,
        "column 12: a colon is missing after the key \"b\", found \"1\""},
       {"{a: 1}", "/", 1, "column 2: a key in double quotes is missing, found \"a\""},
+      {"{\"a\": 0,5}", "/a", 1, "column 9: a key is missing, found \"5\""},
+      {"[\u22125]", "/0", 1, "column 2: a value is missing, found \"\u2212\""},
       {"{\"a\": 'b'}", "/a", 1, "column 7: texts are written in double quotes"},
       {"[.5]", "/0", 1, "column 2: a number cannot begin with \".\""},
       {"[7, -07]", "/1", 1, "column 6: a number begins with a superfluous 0"},

@@ -14,8 +14,9 @@ namespace cordon {
 namespace {
 
 std::string place_of(const Diagnostic& d) {
-  const std::string pointer = d.pointer.empty() ? "(document)" : detail::printable(d.pointer);
-  return pointer + (d.line > 0 ? " (line " + std::to_string(d.line) + ")" : "");
+  const std::string line = d.line > 0 ? "line " + std::to_string(d.line) : "";
+  if (d.pointer.empty()) return line.empty() ? "the file" : line;
+  return detail::printable(d.pointer) + (line.empty() ? "" : " (" + line + ")");
 }
 
 /// One mistake that was made in many places is told once, with the first place and the last.

@@ -114,6 +114,8 @@ std::string FaultFinder::found() const {
 }
 
 void FaultFinder::key() {
+  if (is_digit(peek()) && at_ >= 2 && text_[at_ - 1] == ',' && is_digit(text_[at_ - 2]))
+    fail("a key is missing, " + found(), "a decimal comma? Write 0.5, not 0,5");
   if (peek() != '"')
     fail("a key in double quotes is missing, " + found(), "keys are texts: \"key\": value");
   text();
@@ -129,6 +131,9 @@ void FaultFinder::value() {
   if (c == '+' || c == '.')
     fail("a number cannot begin with " + in_quotes(std::string_view(&c, 1)),
          "write 0.5, not .5 or +0.5");
+  constexpr std::string_view minus_sign = "\u2212";
+  if (text_.substr(at_, minus_sign.size()) == minus_sign)
+    fail("a value is missing, " + found(), "write the minus sign as -");
   fail("a value is missing, " + found(), c == ']' || c == '}' ? "is there a comma too many?" : "");
 }
 
