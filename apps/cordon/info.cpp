@@ -89,10 +89,13 @@ std::vector<Component> matching(const Registry& registry, const std::string& nam
   throw Error(Errc::invalid, fmt::format("no component \"{}\"; {}", name, suggestion));
 }
 
-Exit info(const Program& program, const std::string& name, bool json) {
+Exit info(const Program& program, const std::vector<std::string>& names, bool json) {
   Registry registry;
   load_plugins(registry, program.plugins);
-  const auto matches = matching(registry, name);
+  std::vector<Component> matches;
+  for (const std::string& name : names) {
+    for (const Component& component : matching(registry, name)) matches.push_back(component);
+  }
   warn_refused(registry);
   if (json) {
     Json entries = Json::array();
@@ -111,15 +114,15 @@ Exit info(const Program& program, const std::string& name, bool json) {
 }  // namespace
 
 void add_info(CLI::App& app, Program& program) {
-  CLI::App* command = app.add_subcommand("info", "Explain a component and its parameters");
-  const auto name = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("info", "Explain components and their parameters");
+  const auto names = std::make_shared<std::vector<std::string>>();
   const auto json = std::make_shared<bool>(false);
   CLI::Option* const given = command->add_option(
-      "COMPONENT", *name, "Name of a component of any kind; without one all are listed");
+      "COMPONENT", *names, "Names of components of any kind; without one all are listed");
   command->add_flag("--json", *json, "Print JSON for programs");
-  command->callback([&program, name, json, given] {
+  command->callback([&program, names, json, given] {
     const bool all = given->count() == 0;
-    program.exit = all ? list_components(program, *json) : info(program, *name, *json);
+    program.exit = all ? list_components(program, *json) : info(program, *names, *json);
     if (all && !*json) print("\n\"cordon info NAME\" explains one of them.\n");
   });
 }

@@ -32,7 +32,8 @@ std::string describe_system(const Study& study) {
       model.faults() > 0 ? ", " + count(model.faults(), "additive fault") : "";
   const std::string sampled =
       study.continuous
-          ? fmt::format(", sampled every {:.6g} s from continuous time", study.labels.sampling_time)
+          ? fmt::format(", sampled every {:.6g} s from continuous time (W then has {})",
+                        study.labels.sampling_time, count(study.model.W.generators(), "generator"))
           : "";
   return fmt::format("{}{}, {}, {}, {}, {}, {}{}{}", model.is_uncertain() ? "uncertain " : "",
                      model.is_descriptor() ? "descriptor" : "lti", count(model.states(), "state"),

@@ -102,6 +102,27 @@ TEST_CASE("steps that rows leave out are steps without outputs, with the input b
   CHECK_MESSAGE(run("verify out").code == 0, run("verify out").out);
 }
 
+TEST_CASE("a mode lasts between two rows of it, and is not known between others") {
+  Json made = study({{"irregular", "gaps"}, {"mode", "m"}});
+  made["system"]["modes"] = Json::parse(
+      R"([{"name": "leak", "additive": {"F": [[-1]], "f": {"type": "box", "lower": [3], "upper": [4]}}}])");
+  made["pipelines"] = Json::parse(R"([{"name": "D", "backend": "constrained_zonotope", "diagnoser":
+    {"type": "consistency_bank", "observer": "prediction_correction",
+     "restart_set": {"type": "box", "lower": [-9], "upper": [9]}}}])");
+  made["metrics"] = Json::array();
+  const Run run(
+      "t,u,y,m\n10,1,0,healthy\n11,1,0.1,healthy\n12,1,-3.5,leak\n12.5,1,-5.3,leak\n"
+      "13.5,1,-6.5,leak\n14,1,-6.9,leak\n",
+      made, 0);
+  CHECK_MESSAGE(run.outcome.code == 0, run.outcome.out);
+  CHECK(bytes_of(run.scratch / "out/data.csv") ==
+        "k,u_1,y_1,mode\n0,1,0,0\n1,1,,0\n2,1,0.1,0\n3,1,,\n4,1,-3.5,1\n5,1,-5.3,1\n6,1,,1\n"
+        "7,1,-6.5,1\n8,1,-6.9,1\n");
+  CHECK(run.outcome.says("True mode excluded: never"));
+  CHECK(run.outcome.says("leak       1"));  // is scored
+  CHECK(run("report out --csv").code == 0);
+}
+
 TEST_CASE("options of times that do not fit together") {
   Json no_time = study({{"irregular", "gaps"}});
   no_time["data"]["csv"].erase("time");

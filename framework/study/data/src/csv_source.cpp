@@ -262,6 +262,7 @@ std::optional<Record> CsvSource::next() {
   Sample& sample = record->sample;
   if (sample.k == k_) {
     last_input_ = sample.u;
+    last_mode_ = record->mode;
     ++k_;
     return record;
   }
@@ -269,7 +270,7 @@ std::optional<Record> CsvSource::next() {
   Record gap{{static_cast<Index>(k_++), last_input_,
               Vector::Constant(p, std::numeric_limits<double>::quiet_NaN())},
              std::nullopt,
-             std::nullopt};
+             last_mode_ == record->mode ? last_mode_ : std::nullopt};
   for (Index i = 0; i < p; ++i) gap.sample.missing.push_back(i);
   waiting_ = std::move(record);
   return gap;

@@ -35,10 +35,9 @@ void read_time_column(const Cursor& at, const Labels& labels, CsvSpec& spec) {
     irregular->error("says what times are that leave steps out", "name the column \"time\"");
   const auto name = read_choice(*irregular, irregular_rows_names());
   if (name == "gaps") spec.irregular = IrregularRows::gaps;
-  for (const char* key : {"truth", "mode"}) {
-    if (name != "gaps" || !at.find(key)) continue;
-    at.find(key)->error("is not known at steps that the rows leave out",
-                        "leave it out, or add rows for these steps");
+  if (const auto truth = at.find("truth"); truth && name == "gaps") {
+    truth->error("is not known at steps that the rows leave out",
+                 "leave it out, or add rows for these steps");
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,7 @@ using Kind = json::Value::Kind;
 
 constexpr std::size_t most_residuals = 24;  ///< figures
 constexpr std::size_t most_marks = 100;
+constexpr std::size_t most_events = 40;
 
 /// Names of the modes, from the first pipeline that has them.
 std::vector<std::string> modes_of(const RunFiles& files, std::size_t count) {
@@ -55,6 +57,64 @@ std::vector<Mark> marks_of(const RunFiles& files, std::size_t pipeline) {
     }
   }
   return marks;
+}
+
+/// "leak 2 in [0.1, 0.2]" of every bound; else the proof of an exclusion with its margin.
+std::string evidence_of(const RunFiles& files, const Cursor& event) {
+  std::string text;
+  for (const Cursor& bound : items_of(event, "faults")) {
+    if (!bound.expect(Kind::object, "")) continue;
+    const Labels::Names& names = files.labels().faults;
+    const double number = value_of(bound, "fault");
+    const bool is_named = number >= 1 && number <= static_cast<double>(names.size());
+    text += fmt::format(
+        "{}{} in [{}, {}]", text.empty() ? "" : ", ",
+        is_named ? names[static_cast<std::size_t>(number) - 1] : "fault " + shown(number, 15),
+        shown(value_of(bound, "lower"), 4), shown(value_of(bound, "upper"), 4));
+  }
+  if (!text.empty()) return text;
+  const auto evidence = event.find("evidence");
+  if (!evidence || !evidence->is(Kind::object)) return "";
+  const auto proof = evidence->find("proof");
+  if (!proof || !proof->is(Kind::object)) return "";
+  const double margin = value_of(*proof, "margin");
+  return text_of(*proof, "kind") +
+         (std::isnan(margin) ? "" : fmt::format(", margin {}", shown(margin, 3)));
+}
+
+/// What happened, in words, for pipelines of the first seed.
+void add_events(const RunFiles& files, Report& report) {
+  const double seconds = files.labels().sampling_time;
+  Table table{{"Pipeline", "k", "t [s]", "Event", "Mode", "Evidence"}, {}};
+  if (!(seconds > 0)) table.header.erase(table.header.begin() + 2);
+  bool more = false;
+  for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
+    if (files.pipelines()[p].kind != PipelineKind::diagnosis) continue;
+    const auto summary = summary_of(files, p);
+    if (!summary) continue;
+    std::size_t rows = 0;
+    for (const Cursor& event : items_of(*summary, "events")) {
+      if (!event.expect(Kind::object, "")) continue;
+      more = more || rows == most_events;
+      if (rows++ >= most_events) break;
+      const double k = value_of(event, "k");
+      std::vector<Table::Cell> row{text_cell(files.pipelines()[p].name), number_cell(k, 15)};
+      if (seconds > 0) row.push_back(number_cell(k * seconds, 6));
+      const std::string what = text_of(event, "what");
+      std::string mode = text_of(event, "mode");
+      if (what == "truth") mode = name_of(mode);
+      row.push_back(text_cell(what == "truth" ? "true mode" : what));
+      row.push_back(text_cell(what == "detected" ? "departure from " + mode : mode));
+      row.push_back(text_cell(evidence_of(files, event)));
+      table.rows.push_back(std::move(row));
+    }
+  }
+  if (table.rows.empty()) return;
+  report.figures.push_back(
+      {"events", section::diagnosis, "Events",
+       std::string("What the diagnosers said when, in the first seed. An exclusion is a proof.") +
+           (more ? fmt::format(" The first {} of each; results.json has all.", most_events) : ""),
+       std::move(table)});
 }
 
 void add_timeline(const RunFiles& files, const DiagnosisTable& table,
@@ -219,6 +279,7 @@ void add_diagnosis(const RunFiles& files, const Curves& curves, Report& report) 
   for (std::size_t p = 0; p < table.pipelines.size(); ++p) {
     if (table.pipelines[p].any && table.modes > 1) add_timeline(files, table, modes, p, report);
   }
+  add_events(files, report);
   add_scores(files, report);
   add_faults(files, table, report);
   add_residuals(files, table, modes, curves.events, report);

@@ -47,6 +47,8 @@ std::vector<Measure> list_of_own() {
       {.name = "undecided", .title = "undecided steps", .better = less, .in_comparison = if_any},
       {.name = "detection_delay_median", .title = "detection delay", .better = less},
       {.name = "isolation_delay_median", .title = "isolation delay", .better = less},
+      {.name = "first_detected_at", .title = "detected at k", .in_comparison = if_any},
+      {.name = "first_isolated_at", .title = "isolated at k", .in_comparison = if_any},
       {.name = "false_alarm_rate", .title = "false alarms", .better = less, .share = true},
       {.name = "wrong_mode_rate",
        .title = "wrong mode",

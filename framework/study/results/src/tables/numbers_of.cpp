@@ -97,6 +97,13 @@ void add_faults(Numbers& numbers, const std::vector<FaultStatistics>& faults) {
   }
 }
 
+/// When such an event is told first; -1: never.
+Index first_of(const std::vector<DiagnosisEvent>& events, DiagnosisEvent::Kind kind) {
+  const auto found = std::find_if(events.begin(), events.end(),
+                                  [&](const DiagnosisEvent& event) { return event.what == kind; });
+  return found == events.end() ? -1 : found->k;
+}
+
 void add_diagnosis(Numbers& numbers, const PipelineOutcome& outcome) {
   const DiagnosisOutcome& found = *outcome.diagnosis();
   numbers.time("assumptions_until", outcome.assumptions_until);
@@ -124,6 +131,9 @@ void add_diagnosis(Numbers& numbers, const PipelineOutcome& outcome) {
     numbers.count("unknown_fault", outside.unknown_fault);
     numbers.delay("detection_delay", found.detection);
     numbers.delay("isolation_delay", found.isolation);
+  } else {
+    numbers.time("first_detected_at", first_of(found.events, DiagnosisEvent::Kind::detected));
+    numbers.time("first_isolated_at", first_of(found.events, DiagnosisEvent::Kind::isolated));
   }
   add_faults(numbers, found.faults);
 }

@@ -61,6 +61,7 @@ class CsvSource final : public DataSource {
   StepClock clock_;                ///< of the second reading
   std::optional<Record> waiting_;  ///< the row after steps that are left out
   Vector last_input_;
+  std::optional<Index> last_mode_;  ///< of the row before; between rows of one mode it lasts
   std::int64_t k_ = 0;
 };
 
