@@ -1,14 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observer_parameters.hpp"
 
+#include <array>
+#include <utility>
+
 #include "cordon/core/line_elimination.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 
 namespace cordon::estimators {
 
 namespace {
+
 constexpr std::int64_t most_generators = 100'000;
+
+/// Is it unbounded, and the backend holds bounded sets only?
+bool is_beyond(const ObserverContext& context, const LineForm& set) {
+  return !context.backend->info().unbounded && eliminate_lines(set).lines() > 0;
 }
+
+std::array<std::pair<const LineForm*, const char*>, 2> noises_of(const Model& model) {
+  return {std::pair(&model.W, "W"), std::pair(&model.V, "V")};
+}
+
+}  // namespace
 
 ParamSchema common_parameters() {
   ParamSchema schema;
@@ -55,7 +69,7 @@ void check_set(const ObserverContext& context, const LineForm& set, const std::s
         {pointer,
          "has dimension " + std::to_string(set.dim()) + ", the state has " + std::to_string(n),
          "give a set of dimension " + std::to_string(n)});
-  } else if (!context.backend->info().unbounded && eliminate_lines(set).lines() > 0) {
+  } else if (is_beyond(context, set)) {
     problems.push_back(
         {pointer,
          "is unbounded, which the backend \"" + context.backend->info().name +
@@ -77,12 +91,20 @@ std::vector<Diagnostic> check_common(const ObserverContext& context, const Param
   }
   if (params.has("initial_set")) {
     check_set(context, params.set_form("initial_set"), "/initial_set", problems);
-  } else if (!context.backend->info().unbounded && eliminate_lines(context.model.X0).lines() > 0) {
+  } else if (is_beyond(context, context.model.X0)) {
     problems.push_back({"",
                         "the system's X0 is unbounded or not given, which the backend \"" +
                             context.backend->info().name + "\" cannot represent",
                         "give X0 in the system or \"initial_set\" here, or use a backend with "
                         "lines such as \"line_zonotope\""});
+  }
+  for (const auto& [set, name] : noises_of(context.model)) {
+    if (!is_beyond(context, *set)) continue;
+    problems.push_back(
+        {"",
+         std::string("the system's ") + name + " is unbounded, which the backend \"" +
+             context.backend->info().name + "\" cannot represent",
+         std::string("bound ") + name + ", or use a backend with lines such as \"line_zonotope\""});
   }
   return problems;
 }
@@ -105,8 +127,8 @@ void check_bounded_start(const ObserverContext& context, const Params& params,
 }
 
 void check_noises(const ObserverContext& context, std::vector<Diagnostic>& problems) {
-  const Model& model = context.model;
-  for (const auto& [set, name] : {std::pair(&model.W, "W"), std::pair(&model.V, "V")}) {
+  for (const auto& [set, name] : noises_of(context.model)) {
+    if (is_beyond(context, *set)) continue;  // is told with what all observers share
     try {
       invariant::enclosing_zonotope(*set, std::string("the system's ") + name);
     } catch (const Error& error) {

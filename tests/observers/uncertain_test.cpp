@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Interval matrices in prediction and correction, and in the Luenberger observer with gains that
 // follow the set.
+#include <algorithm>
+
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
@@ -168,6 +170,25 @@ TEST_CASE("only exact matrices make exact sets") {
     *radius = Matrix{{.1}};
     CHECK(claim(model) == Tightness::outer);
     *radius = Matrix{};
+  }
+}
+
+TEST_CASE("observers say in advance that noises are unbounded and their sets are not") {
+  for (const std::string set : {"W", "V"}) {
+    Model model = scalar();
+    (set == "W" ? model.W : model.V) = make_space(1);
+    for (const char* observer : {"prediction_correction", "luenberger", "zonotope_uncertain"}) {
+      CAPTURE(observer);
+      const auto problems =
+          registry().check<ObserverEntry>(observer, {model, backend("zonotope")}, {});
+      const auto told = std::count_if(problems.begin(), problems.end(), [&](const auto& problem) {
+        return problem.message.find("the system's " + set + " is unbounded") != std::string::npos;
+      });
+      CHECK(told == 1);
+    }
+    CHECK(registry()
+              .check<ObserverEntry>("prediction_correction", {model, backend("line_zonotope")}, {})
+              .empty());
   }
 }
 
