@@ -37,7 +37,7 @@ std::string separation(Answer claimed, const ExactPair* exact) {
 
 /// " with κ ≥ 0.0001": what is searched for.
 std::string margin_text(const DesignOutcome& outcome) {
-  return outcome.epsilon > 0 ? fmt::format(" with κ ≥ {}", six_digits(outcome.epsilon)) : "";
+  return outcome.epsilon > 0 ? fmt::format(" with κ ≥ {}", outcome.epsilon) : "";
 }
 
 /// What is said of the cost of every input that is searched for.

@@ -26,8 +26,11 @@ struct VerifyArguments {
   bool json = false, quiet = false;
 };
 
+/// Something of it was, or could have been; of a design without an input nothing can be: that there
+/// is none is not proven again.
 bool is_checked(const VerifiedPipeline& p) {
-  return p.asked_for && p.kind != PipelineKind::diagnosis;
+  return p.asked_for && (p.kind == PipelineKind::estimation ||
+                         (p.kind == PipelineKind::design && p.proofs + p.undecided > 0));
 }
 
 using Count = SecondOpinionFindings::Count;
@@ -81,11 +84,13 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
           p.fails_again == Answer::yes ? " (proven again)" : "");
     }
     if (!is_checked(p)) {
-      passed_over +=
-          fmt::format("not re-checked: {} (a diagnosis; its sets are not stored)\n", p.name);
+      passed_over += fmt::format("not re-checked: {} ({})\n", p.name,
+                                 p.kind == PipelineKind::diagnosis
+                                     ? "a diagnosis; its sets are not stored"
+                                     : "no input; that there is none is the designer's word");
       continue;
     }
-    if (p.kind == PipelineKind::design && p.proofs + p.undecided > 0)
+    if (p.kind == PipelineKind::design)
       passed_over += fmt::format(
           "not re-checked: the experiments of {} (of its design, the separation is)\n", p.name);
     if (p.exact_claims_unproven > 0) {
@@ -218,7 +223,7 @@ Exit verify(VerifyArguments& arguments) {
       outcome.pipelines.begin(), outcome.pipelines.end(),
       [](const VerifiedPipeline& p) { return is_checked(p) || !p.failed_assumption.empty(); });
   if (!any && !outcome.pipelines.empty()) {
-    complain("nothing was checked: estimates and designs are, and there are none among these");
+    complain("nothing was checked: estimates and designed inputs are, and there are none here");
     return Exit::unanswered;
   }
   if (!arguments.quiet && !arguments.json) print(final_text(outcome));

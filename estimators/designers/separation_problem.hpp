@@ -36,7 +36,6 @@ struct SeparationProblem {
   Cost cost;
   double epsilon = 0;
   std::vector<std::string> modes = {};  ///< their names, for reasons
-  bool encloses = false;  ///< tubes are wider than the models': other u may separate these
 };
 /// The modes of a pair, for people: by their names, or by numbers from 1 where these are not given.
 std::string modes_of(const SeparationProblem& problem, const PairProgram& pair);

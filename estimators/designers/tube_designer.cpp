@@ -84,7 +84,6 @@ std::optional<SeparationProblem> problem_at(const ModeBank& bank, const SetBacke
     if (stop()) return std::nullopt;
     tubes.push_back(output_tube(mode.model, backend, span_from(params, horizon)));
     problem.conditions.push_back(conditions_of(tubes.back()));
-    problem.encloses = problem.encloses || tubes.back().encloses;
   }
   for (std::size_t i = 0; i < tubes.size(); ++i) {
     for (std::size_t j = i + 1; j < tubes.size(); ++j) {
@@ -112,11 +111,8 @@ std::optional<InputDesign> judge(const ModeBank& bank, const SetBackend& backend
     if (stop()) return std::nullopt;
     design.pairs.push_back(separation(pair, u));
   }
-  for (const TubeConditions& rows : problem.conditions) {
-    const Answer empty = is_empty_under(rows, u);
-    const bool of_wider_only = problem.encloses && rows.b.size() > 0 && empty == Answer::no;
-    design.empty.push_back(of_wider_only ? Answer::unknown : empty);
-  }
+  for (const TubeConditions& rows : problem.conditions)
+    design.empty.push_back(is_empty_under(rows, u));
   for (const Mode& mode : bank.modes) {
     if (stop()) return std::nullopt;
     design.outputs.push_back(
@@ -171,25 +167,6 @@ bool is_answer(const ModeBank& bank, const Params& params, double epsilon, Desig
   return false;
 }
 
-/// What is found of tubes that are wider than the models' does not bound the problem.
-void relax(const std::string& backend, SearchResult& found) {
-  const std::string wider = fmt::format("X0, W and V as \"{}\" encloses them", backend);
-  if (!found.restriction)
-    found.restriction = RestrictedProblem{"the tubes of wider sets, " + wider, found.lower_bound};
-  found.lower_bound = -infinity;
-  if (found.status == DesignStatus::optimal) {
-    found.status = DesignStatus::feasible;
-    found.reason = "the search was among the tubes of wider sets, " + wider;
-  } else if (found.status == DesignStatus::infeasible) {
-    found.status = DesignStatus::unknown;
-    found.reason = "no input separates the tubes of wider sets, " + wider +
-                   "; one may separate those of the study";
-  } else {
-    return;
-  }
-  found.suggestion = "a backend that holds the sets as they are, such as line_zonotope";
-}
-
 }  // namespace
 
 DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
@@ -210,7 +187,6 @@ DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
     }
     problem->U = inputs_from(bank(), params_, horizon);
     SearchResult found = search(*problem, std::max(watch.left(), least_time), control);
-    if (problem->encloses) relax(backend().info().name, found);
     outcome.status = found.status;
     outcome.lower_bound = found.lower_bound;
     outcome.restriction = std::move(found.restriction);

@@ -87,8 +87,7 @@ class TubeBuilder {
              Matrix::Zero(outputs, inputs), Vector::Zero(outputs),
              Matrix::Zero(rows, lines),     Matrix::Zero(rows, factors),
              Matrix::Zero(rows, inputs),    Vector::Zero(rows)};
-    tube_.is_exact = !m_.unscaled && !encloses_;
-    tube_.encloses = encloses_;
+    tube_.is_exact = !m_.unscaled;
     tube_.c_size = Vector::Zero(outputs);
     tube_.b_size = Vector::Zero(rows);
 
@@ -105,10 +104,11 @@ class TubeBuilder {
   }
 
  private:
-  LineForm imported(const SetBackend& backend, const LineForm& X) {
+  /// As the backend writes the set, if that is the set.
+  static LineForm imported(const SetBackend& backend, const LineForm& X) {
     const Enclosure set = backend.import(X);
-    encloses_ = encloses_ || set.tightness != Tightness::exact || !backend.info().exact_exchange;
-    return set->line_form();
+    const bool is_same = set.tightness == Tightness::exact && backend.info().exact_exchange;
+    return is_same ? set->line_form() : X;
   }
 
   /// A point of the set, with unknowns and rows of its own.
@@ -197,7 +197,6 @@ class TubeBuilder {
   LinearModel m_;
   const TubeSpan& span_;
   Index n_;
-  bool encloses_ = false;  ///< a set is wider than that of the model
   LineForm X0_, W_, V_;
   std::optional<LineForm> XA_;
   std::optional<DescriptorMatrix> E_;

@@ -34,7 +34,6 @@ struct OutputTube {
   Matrix S, A, Omega;
   Vector b;
   bool is_exact = true;             ///< no product or sum was rounded
-  bool encloses = false;            ///< X0, W, V or X_A is wider than that of the model
   Vector c_size = {}, b_size = {};  ///< of the terms that c, G and b, A were added up from: where
                                     ///< X0 lies far away in unlike coordinates, A x₀ cancels
 
@@ -44,9 +43,9 @@ struct OutputTube {
   LineForm at(VectorIn u) const;
 };
 
-/// The tube with X0, W, V (and X_A) as `backend` expresses them: enclosures of those of the model,
-/// so that what is empty, or disjoint from another tube, is so of the model's; the contrary is not.
-/// Throws Errc::unsupported where it cannot.
+/// The tube with X0, W, V (and X_A) as `backend` expresses them; of a set that it can only enclose
+/// as the model has it, for of a wider tube neither that it meets another one nor κ could be said.
+/// Throws Errc::unsupported where the backend cannot even enclose.
 OutputTube output_tube(const Model& model, const SetBackend& backend, const TubeSpan& span);
 
 /// What rounding in the elimination of lines may have changed in a row, as a share of its terms.

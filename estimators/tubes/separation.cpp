@@ -140,7 +140,6 @@ PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTub
           linalg::product(shares, whole->terms + of_lines.terms),
           linalg::product(shares, input_terms + of_lines.input_terms),
           rest.follow && is_exact ? 0 : rest.vanished,
-          Yi.encloses || Yj.encloses,
           whole};
 }
 
@@ -165,8 +164,7 @@ std::vector<PairProgram> pair_programs(const std::vector<OutputTube>& tubes) {
 
 PairSeparation separation(const PairProgram& pair, VectorIn u) {
   PairSeparation result{pair.i, pair.j, -1, -1, Answer::no, {Certificate::Kind::structure, {}, 0}};
-  const bool can_meet = pair.vanished == 0 && !pair.encloses;
-  if (pair.rows() == 0 && can_meet) return result;  // nothing to violate
+  if (pair.rows() == 0 && pair.vanished == 0) return result;  // nothing to violate
   if (pair.rows() == 0) {
     result.disjoint = Answer::unknown;
     result.why = {};
@@ -175,7 +173,7 @@ PairSeparation separation(const PairProgram& pair, VectorIn u) {
   const Vector d = linalg::product(pair.N, u) - pair.c;
   const Vector terms = pair.terms(u.cwiseAbs()), error = row_noise * terms;
   result.disjoint = BoxedProgram(pair.G, d, {terms, error}).is_empty(&result.why);
-  if (result.disjoint == Answer::no && !can_meet) {
+  if (result.disjoint == Answer::no && pair.vanished > 0) {
     result.disjoint = Answer::unknown;
     result.why = {};
   }
@@ -197,7 +195,6 @@ PairSeparation separation(const PairProgram& pair, VectorIn u) {
         std::max(result.kappa_lower, proven_kappa(pair.G, d, error, result.why.data));
   }
   if (falls) result.kappa_lower = -1;
-  if (pair.encloses) result.kappa_lower = result.disjoint == Answer::yes ? 0 : -1;
   // the solver's κ is right to its tolerance; it does not contradict what is proven
   if (result.kappa < result.kappa_lower) result.kappa = result.kappa_lower;
   if (result.disjoint == Answer::yes && result.kappa < 0) result.kappa = 0;

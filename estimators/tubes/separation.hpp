@@ -25,8 +25,6 @@ struct PairProgram {
   Matrix N_magnitude = {};  ///< m×n_u(N+1), likewise of N; 0×0: nothing cancelled
   Index vanished = 0;  ///< rows that became 0 = 0 up to rounding, and are left out: that tubes meet
                        ///< is not proven then
-  bool encloses = false;  ///< a tube is wider than the model's: that they meet is not proven then,
-                          ///< and κ, a measure of the sets as they are written, is not bounded
   std::shared_ptr<const PairRows> whole =
       {};  ///< that tubes are disjoint is held against them; none: nothing was eliminated
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Backends that enclose V make tubes wider: what is said of wider tubes holds of the study's own
-// only where they are disjoint.
+// Backends that can only enclose V: what is said of tubes is said of the study's own sets, for of
+// wider ones only that they are disjoint would hold.
 #include <doctest/doctest.h>
 
 #include "cordon/study/design.hpp"
@@ -52,45 +52,61 @@ Params question() { return Params().set("horizon", std::int64_t{1}).set("epsilon
 
 }  // namespace
 
-TEST_CASE("a search among wider tubes neither excludes inputs nor bounds their cost") {
-  for (const std::string designer : {"facets", "milp"}) {
-    CAPTURE(designer);
-    const DesignOutcome narrow =
-        answer(thin_noise(thin_zonotope(), 1.5), "interval", designer, question());
-    CHECK(narrow.status == DesignStatus::unknown);  // u_0 = 5/16 does
-    CHECK(narrow.lower_bound == -infinity);
-    CHECK_FALSE(narrow.reason.empty());
-    const DesignOutcome wide =
-        answer(thin_noise(thin_zonotope(), 8), "interval", designer, question());
-    CHECK(wide.status == DesignStatus::feasible);
-    CHECK(wide.lower_bound == -infinity);
-    REQUIRE(wide.restriction);
-    CHECK(wide.restriction->lower_bound <= wide.best->cost);
+TEST_CASE("designs are those of the study's sets, whatever the backend makes of them") {
+  const ModeBank narrow = thin_noise(thin_zonotope(), 1.5), wide = thin_noise(thin_zonotope(), 8);
+  for (const std::string set : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
+    CAPTURE(set);
+    for (const ModeBank& bank : {narrow, wide}) {
+      const DesignOutcome found = answer(bank, set, "facets", question());
+      CHECK(found.status == DesignStatus::optimal);
+      REQUIRE(found.best);
+      CHECK(found.best->cost == doctest::Approx(5. / 16).epsilon(1e-9));
+      CHECK(found.lower_bound <= 5. / 16 + 1e-9);
+    }
+    CHECK(answer(narrow, set, "milp", question()).status == DesignStatus::feasible);
   }
 }
 
-TEST_CASE("with sets as they are the same designs are optimal") {
-  const DesignOutcome found =
-      answer(thin_noise(thin_zonotope(), 1.5), "line_zonotope", "facets", question());
-  CHECK(found.status == DesignStatus::optimal);
-  CHECK(found.best->cost == doctest::Approx(5. / 16).epsilon(1e-9));
-  CHECK_FALSE(found.restriction);
-  const DesignOutcome boxes =
-      answer(thin_noise(examples::cube(2, 1), 8), "interval", "facets", question());
-  CHECK(boxes.status == DesignStatus::optimal);
-}
-
-TEST_CASE("outputs of wider tubes that can be the same may differ in the study") {
+TEST_CASE("outputs and κ under a given input are those of the study's sets") {
   const ModeBank bank = thin_noise(thin_zonotope(), 8);
-  for (const double u : {1., 4.}) {
+  for (const std::string set : {"interval", "zonotope", "line_zonotope"}) {
     const Params given =
-        Params().set("input", Matrix((Matrix(2, 1) << u, 0).finished())).set("epsilon", .25);
-    const DesignOutcome found = answer(bank, "interval", "given", given);
+        Params().set("input", Matrix((Matrix(2, 1) << 1, 0).finished())).set("epsilon", .25);
+    const DesignOutcome found = answer(bank, set, "given", given);
     REQUIRE(found.best);
-    CHECK(found.best->pairs[0].disjoint == (u > 2 ? Answer::yes : Answer::unknown));
-    CHECK(found.best->pairs[0].kappa_lower <= 0);
+    CHECK(found.best->pairs[0].disjoint == Answer::yes);
+    CHECK(found.best->pairs[0].kappa == doctest::Approx(3).epsilon(1e-9));
     const ExactSeparation exact = verify_design(bank, found);
     CHECK(exact.separates() == Answer::yes);
     CHECK(refuted_claims(bank, {"given", given}, found, &exact).empty());
+  }
+}
+
+TEST_CASE("κ is about a set with constraints as it is written") {
+  // v = ξ_1 + ξ_2/2 with ξ_1 + ξ_2 = 1/2 grows by 1/4 less than t in size when factors grow to t
+  LineForm V{Matrix(1, 0), (Matrix(1, 2) << 1, .5).finished(), numbers({0}),
+             Matrix(1, 0), (Matrix(1, 2) << 1, 1).finished(),  numbers({.5})};
+  Model model;
+  model.linear = {{},
+                  Matrix::Zero(1, 1),
+                  Matrix::Ones(1, 1),
+                  Matrix::Zero(1, 1),
+                  Matrix::Ones(1, 1),
+                  Matrix::Zero(1, 1),
+                  Matrix::Ones(1, 1)};
+  model.X0 = model.W = make_point(numbers({0}));
+  model.V = V;
+  model.U = examples::cube(1, 8);
+  ModeBank bank;
+  bank.modes.push_back({"healthy", model});
+  model.linear.B.setZero();
+  bank.modes.push_back({"dead", model});
+  for (const std::string set : {"interval", "zonotope", "line_zonotope"}) {
+    CAPTURE(set);
+    const DesignOutcome found =
+        answer(bank, set, "facets", Params().set("horizon", std::int64_t{1}).set("epsilon", .5));
+    REQUIRE(found.best);
+    CHECK(found.best->cost == doctest::Approx(1.25).epsilon(1e-9));
+    CHECK(found.best->pairs[0].kappa == doctest::Approx(.5).epsilon(1e-9));
   }
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cordon/core/error.hpp"
+#include "cordon/solvers/set_questions.hpp"
 #include "study/fakes.hpp"
 #include "study/sweep_points.hpp"
 
@@ -56,6 +57,26 @@ TEST_CASE("sets are scaled about their centres, numbers and matrices as they are
   const Read generated(with_axis(scale("/system/V", {2, 4}), zonotope));
   CHECK(generated.at({1}).model.V.G == Matrix{{4, 2}});
   CHECK(generated.at({1}).model.V.c[0] == 5);
+
+  // {δ + ξ/2 : δ + ξ = 1, |ξ| ≤ 1} = [1/2, 3/2]
+  const Json tied{{"type", "line_zonotope"},
+                  {"center", {0}},
+                  {"generators", {{0.5}}},
+                  {"lines", {{1}}},
+                  {"S", {{1}}},
+                  {"A", {{1}}},
+                  {"b", {1}}};
+  const Box twice =
+      interval_hull(Read(with_axis(scale("/system/V", {1, 2}), tied)).at({1}).model.V);
+  CHECK(twice.lower[0] == doctest::Approx(1).epsilon(1e-9));
+  CHECK(twice.upper[0] == doctest::Approx(3).epsilon(1e-9));
+  const Json third{{"type", "box"}, {"lower", {0.1}}, {"upper", {0.3}}};
+  CHECK(Json::parse(Read(with_axis(scale("/system/V", {1, 2}), third)).study.sweep[0].values[0]) ==
+        third);
+
+  Json sparse = Json::parse(with_axis(scale("/system/B", {1, 3})));
+  sparse["system"]["B"] = Json::parse(R"({"rows": 2, "cols": 1, "entries": [[2, 1, 0.5]]})");
+  CHECK(Read(sparse.dump(1)).at({1}).model.linear.B == Matrix{{0}, {1.5}});
 
   const Read matrix(with_axis(scale("/system/B", {3, 0.25})));
   CHECK(matrix.at({0}).model.linear.B == Matrix{{3}, {0}});

@@ -26,19 +26,9 @@ class TubeMembership final : public Diagnoser {
   TubeMembership(const DiagnoserContext& context, const Params& params)
       : Diagnoser(context.bank, context.backend), horizon_(params.integer("horizon")) {
     if (params.has("admissible_set")) admissible_ = params.set_form("admissible_set");
-    for (const Mode& mode : bank().modes) tells_consistency_.push_back(is_exact(mode.model));
   }
 
  private:
-  /// Is the tube that of the mode itself, so that what lies in it does not contradict the mode?
-  bool is_exact(const Model& model) const {
-    if (admissible_ || !backend().info().exact_exchange) return false;
-    for (const LineForm* set : {&model.X0, &model.W, &model.V}) {
-      if (backend().import(*set).tightness != Tightness::exact) return false;
-    }
-    return true;
-  }
-
   void do_start() override {
     candidate_.assign(static_cast<std::size_t>(bank().size()), true);
     u_ = y_ = Vector(0);
@@ -80,7 +70,7 @@ class TubeMembership final : public Diagnoser {
       Certificate why;
       const Answer answer = diagnosers::membership(tube, u, y, &why);
       candidate[j] = answer != Answer::no;
-      if (answer == Answer::unknown || (answer == Answer::yes && !tells_consistency_[j])) continue;
+      if (answer == Answer::unknown || (answer == Answer::yes && admissible_)) continue;
       modes[j].consistent = answer;
       modes[j].why = std::move(why);
     }
@@ -97,7 +87,6 @@ class TubeMembership final : public Diagnoser {
 
   Index horizon_;
   std::optional<LineForm> admissible_;
-  std::vector<bool> tells_consistency_;  ///< by mode
   std::vector<bool> candidate_;
   Vector u_, y_;  ///< since the first sample
   Index since_ = 0;

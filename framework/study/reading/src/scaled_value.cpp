@@ -53,6 +53,23 @@ Value with_member(const Value& object, std::string_view key, Value member) {
   return with_items(object, std::move(items));
 }
 
+/// A matrix as rows, or in its sparse form, whose entries end with their numbers.
+std::optional<Value> scaled_matrix(const Value& matrix, double factor) {
+  const Value* const entries = matrix.kind == Kind::object ? matrix.find("entries") : nullptr;
+  if (!entries) return times(matrix, factor);
+  if (entries->kind != Kind::array) return std::nullopt;
+  std::vector<Value> all;
+  for (const Value& entry : entries->items()) {
+    if (entry.kind != Kind::array || entry.items().empty()) return std::nullopt;
+    std::vector<Value> parts = entry.items();
+    auto number = times(parts.back(), factor);
+    if (!number) return std::nullopt;
+    parts.back() = *std::move(number);
+    all.push_back(with_items(entry, std::move(parts)));
+  }
+  return with_member(matrix, "entries", with_items(*entries, std::move(all)));
+}
+
 std::optional<Value> scaled_box(const Value& box, double factor) {
   const Value *lower = box.find("lower"), *upper = box.find("upper");
   if (!lower || !upper || lower->kind != Kind::array || upper->kind != Kind::array ||
@@ -107,29 +124,39 @@ std::size_t count_of(const Value& value) {
 }
 
 std::optional<Value> scaled(const Value& value, double factor, std::string& problem) {
-  if (value.kind != Kind::object) {
-    auto result = times(value, factor);
+  if (factor == 1) return value;  // without the rounding of a centre
+  const Value* const type = value.kind == Kind::object ? value.find("type") : nullptr;
+  if (value.kind != Kind::object || (!type && value.find("entries"))) {
+    auto result = scaled_matrix(value, factor);
     if (!result) problem = "leads to something else than a number, a matrix or a set";
     return result;
   }
-  const Value* const type = value.find("type");
   const std::string name = type && type->kind == Kind::text ? type->text() : "";
   if (name == "box") {
     auto result = scaled_box(value, factor);
     if (!result) problem = "leads to a box whose bounds are not scaled";
     return result;
   }
-  const Value* const generators = value.find("generators");
   const bool generated =
       name == "zonotope" || name == "constrained_zonotope" || name == "line_zonotope";
-  auto scaled_generators = generated && generators ? times(*generators, factor) : std::nullopt;
-  if (!scaled_generators) {
+  if (!generated || !value.find("center")) {  // components have such types too
     problem =
         "leads to an object that is not scaled: sets of type box, zonotope, constrained_zonotope "
         "and line_zonotope are";
     return std::nullopt;
   }
-  return with_member(value, "generators", *std::move(scaled_generators));
+  Value result = value;
+  for (const char* key : {"generators", "lines"}) {  // which constraints may bind to each other
+    const Value* const columns = value.find(key);
+    if (!columns) continue;
+    auto scaled_columns = scaled_matrix(*columns, factor);
+    if (!scaled_columns) {
+      problem = std::string("leads to a set whose ") + key + " are no matrix";
+      return std::nullopt;
+    }
+    result = with_member(result, key, *std::move(scaled_columns));
+  }
+  return result;
 }
 
 }  // namespace cordon::json

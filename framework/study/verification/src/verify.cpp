@@ -209,7 +209,7 @@ class Verification {
     }
   }
 
-  /// A design claims nothing if there is no input.
+  /// Of a design without an input nothing is checked: that there is none stays a claim.
   void check_input(std::size_t p, const RecordedDesign& recorded) {
     VerifiedPipeline& found = outcome_.pipelines.back();
     if (is_late()) return leave_open(recorded.design->horizon);

@@ -312,7 +312,8 @@ void add_overview(const RunFiles& files, const std::vector<Design>& designs, Rep
     for (std::size_t q = 0; q < pairs.size(); ++q) {
       const Cursor* proof = proof_of(design, q);
       const bool apart = proof && text_of(*proof, "disjoint") == "yes";
-      kappa = std::min(kappa, apart ? value_of(*proof, "kappa_lower") : 0.0);
+      const double lower = apart ? value_of(*proof, "kappa_lower") : std::nan("");
+      if (!std::isnan(kappa)) kappa = std::isnan(lower) ? lower : std::min(kappa, lower);
     }
     table.rows.push_back(
         {text_cell(head.name), text_cell(head.component), text_cell(text_of(design.tree, "status")),
