@@ -32,6 +32,18 @@ std::string value_text(const std::string& json) {
   return value.is_string() ? value.get<std::string>() : json;
 }
 
+/// What the values of a row's axes are called.
+std::vector<std::string> place_texts(const Comparison& comparison, const ComparedRow& row) {
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < row.at.size(); ++i) {
+    texts.push_back(value_text(row.at[i]));
+    if (i >= comparison.labels.size()) continue;
+    const auto label = comparison.labels[i].find(row.at[i]);
+    if (label != comparison.labels[i].end()) texts.back() = label->second;
+  }
+  return texts;
+}
+
 std::string mean_text(const ComparedNumber& number) {
   const Statistics& found = number.statistics;
   std::string text = found.count > 0 ? number_text(found.mean) : found.infinite > 0 ? "∞" : "–";
@@ -82,7 +94,7 @@ Rows rows_of(const Comparison& comparison, const ComparedMeasure& measure) {
   for (const ComparedRow& row : measure.rows) {
     auto& cells = rows.emplace_back();
     cells.push_back(row.pipeline);
-    for (const std::string& value : row.at) cells.push_back(value_text(value));
+    for (const std::string& text : place_texts(comparison, row)) cells.push_back(text);
     for (std::size_t i = 0; i < row.runs.size(); ++i) {
       cells.push_back(mean_text(row.runs[i]));
       if (i == 0) continue;
@@ -245,8 +257,8 @@ std::string compare_csv(const Comparison& comparison) {
         const Statistics& found = number.statistics;
         text += fmt::format("{},{},{}", detail::csv_field(measure.column.name),
                             measure.column.measured ? 1 : 0, detail::csv_field(row.pipeline));
-        for (const std::string& value : row.at)
-          text += fmt::format(",{}", detail::csv_field(value_text(value)));
+        for (const std::string& place : place_texts(comparison, row))
+          text += fmt::format(",{}", detail::csv_field(place));
         text += fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{}", letter(i),
                             detail::csv_field(comparison.runs[i].directory), number.points,
                             number.failed, found.count, found.infinite, csv_number(found.mean),

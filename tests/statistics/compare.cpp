@@ -26,6 +26,7 @@ struct Sweep {
   std::function<bool(int seed)> fails = [](int) { return false; };
   std::string second = "second";
   std::string axis = "budget";
+  json labels = nullptr;
 
   void write(const std::filesystem::path& directory) const {
     json results{{"cordon_results", 1},
@@ -41,6 +42,7 @@ struct Sweep {
     json& axes = results["study"]["sweep"];
     axes.push_back({{"name", axis}, {"path", "/x"}, {"repeat", false}, {"values", {10, "twenty"}}});
     for (int i = 2; i < budgets; ++i) axes[0]["values"].push_back(10 + i);
+    if (!labels.is_null()) axes[0]["labels"] = labels;
     axes.push_back({{"name", "seed"}, {"path", "/y"}, {"repeat", true}, {"values", json::array()}});
     for (int i = 0; i < seeds; ++i) axes[1]["values"].push_back(i);
     int index = 0;
@@ -101,6 +103,16 @@ bool warns(const Comparison& comparison, const std::string& words) {
 }
 
 }  // namespace
+
+TEST_CASE("values are called as the first sweep calls them") {
+  Sweep named;
+  named.labels = {"few", "many"};
+  const Comparison found = compared(named, {});
+  REQUIRE(found.labels.size() == 1);
+  CHECK(found.labels[0].at("10") == "few");
+  CHECK(found.labels[0].at("\"twenty\"") == "many");
+  CHECK(compared({}, named).labels[0].empty());
+}
 
 TEST_CASE("the same sweep twice") {
   const Comparison found = compared({}, {});

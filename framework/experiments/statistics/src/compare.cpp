@@ -38,6 +38,17 @@ std::vector<std::string> names_of(const ResultTable& table, bool repeat) {
   return names;
 }
 
+std::vector<std::map<std::string, std::string>> labels_of(const ResultTable& table) {
+  std::vector<std::map<std::string, std::string>> all;
+  for (const SweepAxis& axis : table.axes) {
+    if (axis.repeat) continue;
+    auto& labels = all.emplace_back();
+    for (std::size_t i = 0; i < std::min(axis.labels.size(), axis.values.size()); ++i)
+      labels.emplace(axis.values[i], axis.labels[i]);
+  }
+  return all;
+}
+
 /// One run, with its rows in groups of repetitions.
 struct Run {
   RecordedTable recorded;
@@ -326,6 +337,7 @@ Comparison compare_results(const std::vector<std::filesystem::path>& directories
     }
   }
   result.axes = names_of(runs.front().recorded.table, false);
+  result.labels = labels_of(runs.front().recorded.table);
   const std::vector<Key> keys = keys_of(runs);
   for (const ResultColumn& column : columns_of(runs))
     result.measures.push_back(measure_of(runs, keys, column));

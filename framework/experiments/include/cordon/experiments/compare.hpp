@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,7 +65,9 @@ struct ComparedMeasure {
 
 struct Comparison {
   std::vector<ComparedRun> runs;
-  std::vector<std::string> axes;          ///< names of those that are not repetitions
+  std::vector<std::string> axes;  ///< names of those that are not repetitions
+  /// Per axis: what values are called, where the first run calls them something.
+  std::vector<std::map<std::string, std::string>> labels = {};
   std::vector<ComparedMeasure> measures;  ///< in the order of the results
   std::vector<std::string> warnings;  ///< different studies, programs or machines; failed points;
                                       ///< pipelines that only some have
