@@ -89,6 +89,7 @@ void run_and_verify(const Json& study, const fs::path& home, Counts& count) {
   const Outcome verified = program("verify --directions 2 " + (home / "out").string());
   CAPTURE(verified.out);
   CHECK((verified.code == 0 || verified.code == 5));
+  if (verified.says("nothing was checked")) return;  // diagnosers alone
   ++(verified.code == 0 ? count.verified : count.undecided);
 }
 
