@@ -84,10 +84,10 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
           p.fails_again == Answer::yes ? " (proven again)" : "");
     }
     if (!is_checked(p)) {
-      passed_over += fmt::format("not re-checked: {} ({})\n", p.name,
-                                 p.kind == PipelineKind::diagnosis
-                                     ? "a diagnosis; its sets are not stored"
-                                     : "no input; that there is none is the designer's word");
+      passed_over +=
+          fmt::format("not re-checked: {} ({})\n", p.name,
+                      p.kind == PipelineKind::diagnosis ? "a diagnosis; its sets are not stored"
+                                                        : "nothing of its design is proven again");
       continue;
     }
     if (p.kind == PipelineKind::design)

@@ -105,7 +105,8 @@ TEST_CASE("steps that rows leave out are steps without outputs, with the input b
 TEST_CASE("a mode lasts between two rows of it, and is not known between others") {
   Json made = study({{"irregular", "gaps"}, {"mode", "m"}});
   made["system"]["modes"] = Json::parse(
-      R"([{"name": "leak", "additive": {"F": [[-1]], "f": {"type": "box", "lower": [3], "upper": [4]}}}])");
+      R"([{"name": "leak",
+           "additive": {"F": [[-1]], "f": {"type": "box", "lower": [3], "upper": [4]}}}])");
   made["pipelines"] = Json::parse(R"([{"name": "D", "backend": "constrained_zonotope", "diagnoser":
     {"type": "consistency_bank", "observer": "prediction_correction",
      "restart_set": {"type": "box", "lower": [-9], "upper": [9]}}}])");

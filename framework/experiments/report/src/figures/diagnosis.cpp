@@ -17,6 +17,7 @@ using Kind = json::Value::Kind;
 constexpr std::size_t most_residuals = 24;  ///< figures
 constexpr std::size_t most_marks = 100;
 constexpr std::size_t most_events = 40;
+constexpr double most_faults = 1000;  ///< columns of F that a study may have
 
 /// Names of the modes, from the first pipeline that has them.
 std::vector<std::string> modes_of(const RunFiles& files, std::size_t count) {
@@ -64,19 +65,17 @@ std::string evidence_of(const RunFiles& files, const Cursor& event) {
   std::string text;
   for (const Cursor& bound : items_of(event, "faults")) {
     if (!bound.expect(Kind::object, "")) continue;
-    const Labels::Names& names = files.labels().faults;
     const double number = value_of(bound, "fault");
-    const bool is_named = number >= 1 && number <= static_cast<double>(names.size());
-    text += fmt::format(
-        "{}{} in [{}, {}]", text.empty() ? "" : ", ",
-        is_named ? names[static_cast<std::size_t>(number) - 1] : "fault " + shown(number, 15),
-        shown(value_of(bound, "lower"), 4), shown(value_of(bound, "upper"), 4));
+    if (!(number >= 1 && number <= most_faults)) continue;
+    const auto i = static_cast<std::size_t>(number) - 1;
+    text += fmt::format("{}{} in [{}, {}]", text.empty() ? "" : ", ",
+                        title_of(files.labels().faults, "fault", i),
+                        shown(value_of(bound, "lower"), 4), shown(value_of(bound, "upper"), 4));
   }
   if (!text.empty()) return text;
-  const auto evidence = event.find("evidence");
-  if (!evidence || !evidence->is(Kind::object)) return "";
-  const auto proof = evidence->find("proof");
-  if (!proof || !proof->is(Kind::object)) return "";
+  const auto evidence = object_of(event, "evidence");
+  const auto proof = evidence ? object_of(*evidence, "proof") : std::nullopt;
+  if (!proof) return "";
   const double margin = value_of(*proof, "margin");
   return text_of(*proof, "kind") +
          (std::isnan(margin) ? "" : fmt::format(", margin {}", shown(margin, 3)));
