@@ -228,7 +228,7 @@ Ellipsoid cut(const Ellipsoid& given, const Strip& strip, Criterion criterion) {
   const Matrix a = strip.a;
   const Vector g = linalg::product(X.L.transpose(), a);
   const double reach = g.size() ? g.stableNorm() : 0;
-  const rounding::Range centre = rounding::dot(strip.a, X.c);
+  const cordon::Interval centre = rounding::dot(strip.a, X.c);
   const double middle = (centre.lower + centre.upper) / 2;
   // everything that aᵀc, g and the rounding box leave open
   const double slack = ((centre.upper - centre.lower) +

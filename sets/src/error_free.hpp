@@ -7,7 +7,6 @@
 
 #include "cordon/core/rounding.hpp"
 #include "cordon/core/types.hpp"
-#include "directed.hpp"
 
 namespace cordon::sets {
 

@@ -4,38 +4,35 @@
 #include <vector>
 
 #include "cordon/core/tolerances.hpp"
-#include "directed.hpp"
 #include "require.hpp"
 
 namespace cordon::sets {
 
 namespace {
 
-using rounding::Range;
-
-Range coordinate(const Box& X, Index i) { return {X.lower[i], X.upper[i]}; }
+Interval coordinate(const Box& X, Index i) { return {X.lower[i], X.upper[i]}; }
 
 /// Stores an interval; one that is not finite on both sides becomes the whole line.
-void store(Box& X, Index i, Range x) {
-  if (!directed::is_finite(x)) x = directed::line();
+void store(Box& X, Index i, Interval x) {
+  if (!x.is_finite()) x = real_line;
   X.lower[i] = x.lower;
   X.upper[i] = x.upper;
 }
 
-Range matrix_entry(const IntervalMatrix& A, Index i, Index j) {
+Interval matrix_entry(const IntervalMatrix& A, Index i, Index j) {
   const double center = A.center(i, j), radius = A.radius(i, j);
   return {directed::plus(center, -radius).lower, directed::plus(center, radius).upper};
 }
 
 /// The hull of T V in row i.
-Range image_row(const Box& V, MatrixIn T, Index i) {
-  Range sum{0, 0};
+Interval image_row(const Box& V, MatrixIn T, Index i) {
+  Interval sum{0, 0};
   for (Index j = 0; j < T.cols(); ++j) {
     if (T(i, j) == 0) continue;
-    if (!directed::is_finite(coordinate(V, j))) return directed::line();
-    sum = directed::plus(sum, directed::times(T(i, j), coordinate(V, j)));
+    if (!coordinate(V, j).is_finite()) return real_line;
+    sum = sum + T(i, j) * coordinate(V, j);
   }
-  return directed::is_finite(sum) ? sum : directed::line();
+  return sum.is_finite() ? sum : real_line;
 }
 
 using Row = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
@@ -54,11 +51,11 @@ class RowContractor {
   RowContractor(Index n, double off) : after_(static_cast<std::size_t>(n) + 1), off_(off) {}
 
   /// `size`: of the terms that y was computed from.
-  Progress contract(Box& X, const Row& row, Range y, double size) {
+  Progress contract(Box& X, const Row& row, Interval y, double size) {
     const Index n = X.dim();
     Index free = -1, frees = 0;
     for (Index j = 0; j < n; ++j) {
-      if (row[j] == 0 || directed::is_finite(coordinate(X, j))) continue;
+      if (row[j] == 0 || coordinate(X, j).is_finite()) continue;
       free = j;
       ++frees;
     }
@@ -66,47 +63,45 @@ class RowContractor {
     after(n) = {0, 0};
     double terms = std::max(size, largest(y));
     for (Index j = n - 1; j >= 0; --j) {
-      const Range own = term(X, row, j);
-      after(j) = directed::plus(after(j + 1), own);
+      const Interval own = term(X, row, j);
+      after(j) = after(j + 1) + own;
       terms += largest(own);
     }
     const double doubt = tolerances::proof_margin * terms, room = off_ * terms;
-    if (room > tolerances::proof_margin * (y.upper - y.lower))
-      y = directed::plus(y, Range{-room, room});
+    if (room > tolerances::proof_margin * (y.upper - y.lower)) y = y + Interval{-room, room};
     if (frees == 0 && (after(0).lower - y.upper > doubt || y.lower - after(0).upper > doubt))
       return Progress::empty;
     Progress progress = Progress::none;
-    Range before{0, 0};
+    Interval before{0, 0};
     for (Index j = 0; j < n; ++j) {
-      const Range own = term(X, row, j);
+      const Interval own = term(X, row, j);
       if (row[j] != 0 && (frees == 0 || j == free)) {
-        const Range others = directed::plus(before, after(j + 1));
-        const Progress step = tighten(X, j, directed::over(directed::minus(y, others), row[j]),
-                                      doubt / std::abs(row[j]));
+        const Interval others = before + after(j + 1);
+        const Progress step = tighten(X, j, (y - others) / row[j], doubt / std::abs(row[j]));
         if (step == Progress::empty) return step;
         if (step == Progress::some) progress = step;
       }
-      before = directed::plus(before, own);
+      before = before + own;
     }
     return progress;
   }
 
  private:
-  Range& after(Index j) { return after_[static_cast<std::size_t>(j)]; }
+  Interval& after(Index j) { return after_[static_cast<std::size_t>(j)]; }
 
   /// row_j x_j, with 0 for a free coordinate (it is then the only one and left out of its own
   /// `others`).
-  static Range term(const Box& X, const Row& row, Index j) {
-    if (row[j] == 0 || !directed::is_finite(coordinate(X, j))) return {0, 0};
-    return directed::times(row[j], coordinate(X, j));
+  static Interval term(const Box& X, const Row& row, Index j) {
+    if (row[j] == 0 || !coordinate(X, j).is_finite()) return {0, 0};
+    return row[j] * coordinate(X, j);
   }
 
-  static double largest(Range x) { return std::max(std::abs(x.lower), std::abs(x.upper)); }
+  static double largest(Interval x) { return std::max(std::abs(x.lower), std::abs(x.upper)); }
 
   /// X_j ∩ x. They are called disjoint only if they are apart by more than `doubt`; nearer, X_j
   /// stays as it is.
-  static Progress tighten(Box& X, Index j, Range x, double doubt) {
-    if (!directed::is_finite(x)) return Progress::none;
+  static Progress tighten(Box& X, Index j, Interval x, double doubt) {
+    if (!x.is_finite()) return Progress::none;
     const double lower = std::max(X.lower[j], x.lower), upper = std::min(X.upper[j], x.upper);
     if (lower > upper) return lower - upper > doubt ? Progress::empty : Progress::none;
     const double old_width = X.upper[j] - X.lower[j], width = upper - lower;
@@ -116,7 +111,7 @@ class RowContractor {
                                                                          : Progress::none;
   }
 
-  std::vector<Range> after_;
+  std::vector<Interval> after_;
   double off_;
 };
 
@@ -125,10 +120,8 @@ class RowContractor {
 void check(const Box& X, const char* what) {
   require_size(X.upper.size(), X.lower.size(), what, "the upper bound");
   for (Index i = 0; i < X.dim(); ++i) {
-    const Range x = coordinate(X, i);
-    if (directed::is_finite(x) ||
-        (x.lower == directed::line().lower && x.upper == directed::line().upper))
-      continue;
+    const Interval x = coordinate(X, i);
+    if (x.is_finite() || (x.lower == real_line.lower && x.upper == real_line.upper)) continue;
     const std::string where = std::string(what) + ": coordinate " + std::to_string(i);
     if (std::isnan(x.lower) || std::isnan(x.upper))
       throw Error(Errc::not_finite, where + " has a NaN bound");
@@ -159,8 +152,8 @@ Box affine_map(const Box& X, MatrixIn T, VectorIn t) {
   if (X.is_empty()) return Box::empty(T.rows());
   Box Y = Box::space(T.rows());
   for (Index i = 0; i < T.rows(); ++i) {
-    const Range image = image_row(X, T, i);
-    if (directed::is_finite(image)) store(Y, i, directed::plus(image, Range{t[i], t[i]}));
+    const Interval image = image_row(X, T, i);
+    if (image.is_finite()) store(Y, i, image + Interval{t[i], t[i]});
   }
   return Y;
 }
@@ -172,8 +165,8 @@ Box minkowski_sum(const Box& X, const Box& Y) {
   if (X.is_empty() || Y.is_empty()) return Box::empty(X.dim());
   Box Z = Box::space(X.dim());
   for (Index i = 0; i < X.dim(); ++i) {
-    const Range x = coordinate(X, i), y = coordinate(Y, i);
-    if (directed::is_finite(x) && directed::is_finite(y)) store(Z, i, directed::plus(x, y));
+    const Interval x = coordinate(X, i), y = coordinate(Y, i);
+    if (x.is_finite() && y.is_finite()) store(Z, i, x + y);
   }
   return Z;
 }
@@ -194,11 +187,11 @@ Box affine_sum(const Box& X, MatrixIn A, VectorIn f, std::span<const MappedBox> 
   if (empty) return Box::empty(A.rows());
   Box Y{Vector(A.rows()), Vector(A.rows())};
   for (Index i = 0; i < A.rows(); ++i) {
-    Range sum = image_row(X, A, i);
-    if (directed::is_finite(sum)) sum = directed::plus(sum, Range{f[i], f[i]});
-    for (std::size_t k = 0; k < summands.size() && directed::is_finite(sum); ++k) {
-      const Range image = image_row(summands[k].set, summands[k].T, i);
-      sum = directed::is_finite(image) ? directed::plus(sum, image) : directed::line();
+    Interval sum = image_row(X, A, i);
+    if (sum.is_finite()) sum = sum + Interval{f[i], f[i]};
+    for (std::size_t k = 0; k < summands.size() && sum.is_finite(); ++k) {
+      const Interval image = image_row(summands[k].set, summands[k].T, i);
+      sum = image.is_finite() ? sum + image : real_line;
     }
     store(Y, i, sum);
   }
@@ -235,14 +228,12 @@ Box interval_map(const Box& X, const IntervalMatrix& A) {
   if (X.is_empty()) return Box::empty(A.rows());
   Box Y = Box::space(A.rows());
   for (Index i = 0; i < A.rows(); ++i) {
-    Range sum{0, 0};
+    Interval sum{0, 0};
     for (Index j = 0; j < X.dim(); ++j) {
       if (A.center(i, j) == 0 && A.radius(i, j) == 0) continue;
-      const Range x = coordinate(X, j), a = matrix_entry(A, i, j);
-      sum = directed::is_finite(x) && directed::is_finite(a)
-                ? directed::plus(sum, directed::times(a, x))
-                : directed::line();
-      if (!directed::is_finite(sum)) break;
+      const Interval x = coordinate(X, j), a = matrix_entry(A, i, j);
+      sum = x.is_finite() && a.is_finite() ? sum + a * x : real_line;
+      if (!sum.is_finite()) break;
     }
     store(Y, i, sum);
   }
@@ -268,24 +259,23 @@ Box contract(const Box& X, MatrixIn C, VectorIn z, MatrixIn T, const Box& V, dou
   require_size(T.rows(), C.rows(), name, "the number of rows of T");
   require_finite(z, name, "z");
   if (X.is_empty() || V.is_empty()) return Box::empty(X.dim());
-  std::vector<Range> y(static_cast<std::size_t>(C.rows()));
+  std::vector<Interval> y(static_cast<std::size_t>(C.rows()));
   Vector size = z.cwiseAbs();  // z - T V cancels where the sets touch
   for (Index i = 0; i < C.rows(); ++i) {
-    const Range noise = image_row(V, T, i);
+    const Interval noise = image_row(V, T, i);
     for (Index j = 0; j < T.cols(); ++j) {
       if (T(i, j) != 0)
         size[i] += std::abs(T(i, j)) * std::max(std::abs(V.lower[j]), std::abs(V.upper[j]));
     }
-    y[static_cast<std::size_t>(i)] =
-        directed::is_finite(noise) ? directed::minus(Range{z[i], z[i]}, noise) : noise;
+    y[static_cast<std::size_t>(i)] = noise.is_finite() ? Interval{z[i], z[i]} - noise : noise;
   }
   Box Y = X;
   RowContractor rows(X.dim(), off);
   for (int sweep = 0; sweep < 20; ++sweep) {
     bool progress = false;
     for (Index i = 0; i < C.rows(); ++i) {
-      const Range range = y[static_cast<std::size_t>(i)];
-      if (!directed::is_finite(range)) continue;
+      const Interval range = y[static_cast<std::size_t>(i)];
+      if (!range.is_finite()) continue;
       const Progress step = rows.contract(Y, C.row(i), range, size[i]);
       if (step == Progress::empty) return Box::empty(X.dim());
       progress |= step == Progress::some;

@@ -29,8 +29,8 @@ struct Strip {
 };
 
 /// aᵀb with its rounding error; exactly 0 if every term is.
-rounding::Range dot(VectorIn a, VectorIn b) {
-  return (a.array() * b.array() != 0).any() ? rounding::dot(a, b) : rounding::Range{0, 0};
+Interval dot(VectorIn a, VectorIn b) {
+  return (a.array() * b.array() != 0).any() ? rounding::dot(a, b) : Interval{0, 0};
 }
 
 /// Z(λ); the generators that vanish up to rounding (those parallel to λ, where ρᵀλ = 1) are
@@ -53,7 +53,7 @@ Zonotope member_of_family(const Zonotope& Z, VectorIn rho, double shift, double 
 /// operation increases.
 bool intersect(Computed& X, VectorIn rho, Strip strip, StripMethod method) {
   const Zonotope& Z = X.Z;
-  const rounding::Range middle = dot(rho, Z.c);
+  const Interval middle = dot(rho, Z.c);
   const double spread =
       Z.generators() == 0 ? 0.0 : rounding::residual_norm_1(Vector::Zero(Z.generators()), Z.G, rho);
   const double lowest = rounding::down(middle.lower - spread),
@@ -74,9 +74,9 @@ bool intersect(Computed& X, VectorIn rho, Strip strip, StripMethod method) {
     sigma = rounding::up(std::abs(high / 2 - low / 2));
   }
   // d - ρᵀc cancels where Z is far from 0; what is lost there widens the strip.
-  const rounding::Range difference = middle.lower == middle.upper
-                                         ? rounding::Range{d - middle.lower, d - middle.lower}
-                                         : rounding::subtract({d, d}, middle);
+  const Interval difference = middle.lower == middle.upper
+                                  ? Interval{d - middle.lower, d - middle.lower}
+                                  : rounding::subtract({d, d}, middle);
   const double shift = difference.lower / 2 + difference.upper / 2;
   sigma += difference.upper / 2 - difference.lower / 2;
   sigma += rounding::gamma(Z.dim() + 1) * seen + rho.cwiseAbs().dot(X.noise);
@@ -121,8 +121,8 @@ std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, Matri
     double d = z[i], sigma = 0;
     if (V.generators() > 0 && !row.isZero(0))
       sigma = rounding::residual_norm_1(Vector::Zero(V.generators()), V.G, row);
-    if (const rounding::Range middle = dot(row, V.c); middle.lower < middle.upper) {
-      const rounding::Range offset = rounding::subtract({z[i], z[i]}, middle);
+    if (const Interval middle = dot(row, V.c); middle.lower < middle.upper) {
+      const Interval offset = rounding::subtract({z[i], z[i]}, middle);
       d = offset.lower / 2 + offset.upper / 2;
       sigma = rounding::up(sigma + rounding::up(std::max(offset.upper - d, d - offset.lower)));
     }

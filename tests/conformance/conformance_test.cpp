@@ -93,7 +93,7 @@ TEST_CASE("a reference bounds the exact support function from both sides") {
     const TestSet X = make.set("X", 'n', random.between(1, 3), {true, 5, 2});
     Reference reference(X.form, {X.point()});
     for (const Vector& d : directions({}, X.form.dim(), random, 3)) {
-      const rounding::Range exact = exact::support(X.form, d);
+      const Interval exact = exact::support(X.form, d);
       const double tolerance = reference.tolerance(d);
       CHECK(reference.lower(d) <= exact.upper + tolerance);
       CHECK(reference.upper(d) >= exact.lower - tolerance);

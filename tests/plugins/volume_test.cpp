@@ -47,7 +47,7 @@ TEST_CASE("volumes with constraints are those of the exact polytope") {
       Vector sizes = Vector::Ones(9);
       sizes.tail(3).setConstant(detail);
       const LineForm X = random_set(sizes, trial % 3, random);
-      const rounding::Range truth = Polytope::from(X).volume();
+      const Interval truth = Polytope::from(X).volume();
       for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
         const auto backend = plugins.backend(name);
         const Volume found = backend->import(X)->volume();
@@ -71,7 +71,7 @@ TEST_CASE("areas and lengths of thin and small sets are exact, or said to be bou
     for (double& size : sizes) size = std::pow(10, power(random));
     LineForm X = random_set(sizes, 1 + trial % 3, random, n);
     X.G.row(n - 1) *= std::pow(10, power(random));
-    const rounding::Range truth = Polytope::from(X).volume();
+    const Interval truth = Polytope::from(X).volume();
     for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
       const Volume found = plugins.backend(name)->import(X)->volume();
       CHECK(found.value >= truth.lower * (1 - 1e-7));
@@ -128,7 +128,7 @@ std::vector<LineForm> with_hidden_vertices() {
 TEST_CASE("a vertex that the solver takes for another is missed by no area that is called exact") {
   const Plugins plugins;
   for (const LineForm& X : with_hidden_vertices()) {
-    const rounding::Range truth = Polytope::from(X).volume();
+    const Interval truth = Polytope::from(X).volume();
     for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
       const Volume found = plugins.backend(name)->import(X)->volume();
       CHECK(found.value >= truth.lower * (1 - 1e-7));
@@ -155,7 +155,7 @@ TEST_CASE("the volume of what constraints leave of a set, and of one far from th
         X.G.leftCols(n) = T;
         X.A << Matrix::Identity(n, n), part * Matrix::Identity(n, n);
         for (double& entry : X.b) entry = .7 * number(random);
-        const rounding::Range truth = Polytope::from(X).volume();
+        const Interval truth = Polytope::from(X).volume();
         for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
           const Volume found = plugins.backend(name)->import(X)->volume();
           CHECK(found.value >= truth.lower * (1 - (found.exact ? 1e-7 : 1e-12)));
@@ -192,11 +192,11 @@ TEST_CASE("the volume of a set thinner than rounding shows is bounded and not ca
         Z.S = Matrix(0, 0);
         Z.A = Matrix(0, 7);
         Z.b = Vector(0);
-        const rounding::Range of_zonotope = Polytope::from(Z).volume();
+        const Interval of_zonotope = Polytope::from(Z).volume();
         const Volume without = plugins.backend("zonotope")->import(Z)->volume();
         CHECK(without.value >= of_zonotope.lower * (1 - (without.exact ? 1e-7 : 0)));
         if (without.exact) CHECK(without.value <= of_zonotope.upper * (1 + 1e-7));
-        const rounding::Range truth = Polytope::from(X).volume();
+        const Interval truth = Polytope::from(X).volume();
         const double hull = (2 * cordon::interval_hull(X).radius()).prod();
         for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
           const Volume found = plugins.backend(name)->import(X)->volume();

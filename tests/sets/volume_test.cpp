@@ -131,7 +131,7 @@ TEST_CASE("hulls of random points, thin ones among them, against exact arithmeti
     points.row(2) *= thin;
     if (*rc::gen::arbitrary<bool>())
       points = Matrix(Matrix{{1, 0, 2}, {0, 1, 3}, {1, 1, 1}} * points);
-    const rounding::Range truth = Polytope::from_generators(points).volume();
+    const Interval truth = Polytope::from_generators(points).volume();
     const VolumeBounds found = volume(hull_of(points));
     const Vector sizes = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
     const double noise = 1e-12 * sizes.prod();

@@ -51,7 +51,7 @@ TEST_CASE("small gaps decide exactly") {
   const LineForm Z = make_zonotope(Vector{{0.1}}, Matrix{{0.2}});
   CHECK(exact::contains(Z, Vector{{0.3}}) == Answer::yes);
   CHECK(exact::contains(Z, Vector{{0.1 + 0.2}}) == Answer::no);
-  const rounding::Range h = exact::support(Z, Vector{{1.0}});
+  const Interval h = exact::support(Z, Vector{{1.0}});
   CHECK(h.upper == 0.1 + 0.2);
   CHECK(h.lower == rounding::down(0.1 + 0.2));
   CHECK(exact::support(make_zonotope(Vector{{0.5}}, Matrix{{0.25}}), Vector{{-3.0}}).lower ==
@@ -129,7 +129,7 @@ TEST_CASE("what does not fit is refused") {
 
 TEST_CASE("extreme numbers stay exact") {
   const LineForm X = constrained(Matrix{{1e-300, 1e300}}, Matrix{{1e-300, -1e300}}, Vector{{0.0}});
-  const rounding::Range h = exact::support(X, Vector{{1e300}});
+  const Interval h = exact::support(X, Vector{{1e300}});
   CHECK(h.lower == rounding::down(h.upper));  // 2e-300 · 1e300 for the doubles, which is not 2
   CHECK(h.upper == doctest::Approx(2.0).epsilon(1e-15));
   CHECK(exact::support(make_zonotope(Vector{{1e300}}, Matrix{{1e300}}), Vector{{1e300}}).upper ==
@@ -148,7 +148,7 @@ TEST_CASE("both exact ways agree: the simplex method and the double description"
     const Polytope P = Polytope::from(X);
     RC_ASSERT((exact::is_empty(X) == Answer::yes) == P.is_empty());
     const Vector d = matrix(n, 1), x = matrix(n, 1);
-    const rounding::Range a = exact::support(X, d), b = P.support(d);
+    const Interval a = exact::support(X, d), b = P.support(d);
     RC_ASSERT(a.lower == b.lower);
     RC_ASSERT(a.upper == b.upper);
     RC_ASSERT((exact::contains(X, x) == Answer::yes) == P.contains(x));
@@ -168,7 +168,7 @@ TEST_CASE("the fast questions never contradict the exact ones") {
     const Answer empty = is_empty(X), inside = contains(X, x);
     if (empty != Answer::unknown) RC_ASSERT(empty == exact::is_empty(X));
     if (inside != Answer::unknown) RC_ASSERT(inside == exact::contains(X, x));
-    const rounding::Range h = exact::support(X, d);
+    const Interval h = exact::support(X, d);
     RC_ASSERT(lower_support(X, d) <= h.upper);
     // lines are eliminated nominally: the bound holds up to rounding errors there
     if (X.lines() == 0) RC_ASSERT(support(X, d) >= h.lower);
@@ -179,8 +179,7 @@ TEST_CASE("linear programs over boxes of non-negative numbers") {
   const auto maximum = [](const Vector& c, const Matrix& K, const Vector& r,
                           const std::vector<int>& bits) { return exact::maximum(c, K, r, bits); };
   const double third = 1.0 / 3;
-  const rounding::Range one =
-      maximum(Vector{{1, 0}}, Matrix{{3, 1}}, Vector{{1}}, {0, 0});  // 3x + y = 1
+  const Interval one = maximum(Vector{{1, 0}}, Matrix{{3, 1}}, Vector{{1}}, {0, 0});  // 3x + y = 1
   CHECK(one.lower <= third);
   CHECK(one.upper >= third);
   CHECK(one.upper == std::nextafter(one.lower, 1));

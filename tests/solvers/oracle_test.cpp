@@ -182,7 +182,7 @@ TEST_CASE("answers agree with rational arithmetic") {
       bounded.count(is_bounded(X), bound, is_near_boundary(X, false), i, "is_bounded");
     }
     const Vector d = draw.vector(n, manner);
-    const rounding::Range h = exact::support(X, d);
+    const Interval h = exact::support(X, d);
     const double ours = support(X, d);
     ++supports;
     below += ours < h.lower ? 1 : 0;

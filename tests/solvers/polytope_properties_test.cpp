@@ -66,7 +66,7 @@ TEST_CASE("every set operation keeps its law") {
     RC_ASSERT(X.affine_map(T, t).preimage(T, t).contains(X));
     RC_ASSERT(X.intersection(T, X.affine_map(T, Vector::Zero(2))) == X);
     // an eighth times an eighth: these products are exact in double arithmetic
-    const rounding::Range a = X.affine_map(T, t).support(e), b = X.support(T.transpose() * e);
+    const Interval a = X.affine_map(T, t).support(e), b = X.support(T.transpose() * e);
     if (std::isfinite(b.lower)) {
       RC_ASSERT(a.lower <= rounding::up(b.upper + e.dot(t)));
       RC_ASSERT(a.upper >= rounding::down(b.lower + e.dot(t)));

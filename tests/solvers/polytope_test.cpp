@@ -32,9 +32,7 @@ Polytope simplex(Index n) {
   return Polytope::from_generators(V);
 }
 
-bool is(rounding::Range range, double value) {
-  return range.lower == value && range.upper == value;
-}
+bool is(Interval range, double value) { return range.lower == value && range.upper == value; }
 
 }  // namespace
 
@@ -49,7 +47,7 @@ TEST_CASE("cubes, simplices and cross polytopes") {
     CHECK(cross_polytope(n).inequalities().H.rows() == corners);
     CHECK(cross_polytope(n).generators().vertices.cols() == 2 * n);
     CHECK(simplex(n).inequalities().H.rows() == n + 1);
-    const rounding::Range volume = cross_polytope(n).volume();
+    const Interval volume = cross_polytope(n).volume();
     CHECK(volume.lower <= corners / factorial);
     CHECK(volume.upper >= corners / factorial);
     CHECK(volume.upper <= rounding::up(volume.lower));

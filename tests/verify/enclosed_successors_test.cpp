@@ -90,8 +90,8 @@ void compare(const LineForm& exact, const verification::Enclosure& enclosure, Co
   const Index n = exact.dim();
   for (Index i = 0; i < n; ++i) {
     const Vector d = Vector::Unit(n, i);
-    const rounding::Range upper = exact::support(exact, d), lower = exact::support(exact, -d);
-    const rounding::Range outer = exact::support(enclosure.widened, d);
+    const Interval upper = exact::support(exact, d), lower = exact::support(exact, -d);
+    const Interval outer = exact::support(enclosure.widened, d);
     CHECK(upper.lower <= outer.upper);
     if (!std::isfinite(upper.upper) || !std::isfinite(outer.upper)) continue;
     ++found.finite;

@@ -24,7 +24,7 @@ constexpr double tube_room = 2e-10;  ///< kept of the factors of tubes
 double roomy(double bound) { return bound * (1 + 1e-9) + 1e-300; }
 
 /// min of d x for d in the range and l ≤ x ≤ u, rounded down.
-double least_product(rounding::Range d, double l, double u) {
+double least_product(Interval d, double l, double u) {
   return rounding::down(std::min({d.lower * l, d.lower * u, d.upper * l, d.upper * u}));
 }
 
@@ -64,7 +64,7 @@ double proven_minimum(const BoundedProgram& program, VectorIn y) {
   const Index n = program.lower.size();
   Vector parts(n + 2);
   for (Index j = 0; j < n; ++j) {
-    const rounding::Range reduced =
+    const Interval reduced =
         rounding::subtract({program.cost[j], program.cost[j]}, rounding::dot(program.A.col(j), y));
     parts[j] = least_product(reduced, program.lower[j], program.upper[j]);
   }

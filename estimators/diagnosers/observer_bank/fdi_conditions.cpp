@@ -49,10 +49,10 @@ Limit limit_from(const std::vector<invariant::SupportPair>& rows, const Zonotope
   Limit limit{{Vector(q), Vector(q)}, {Vector(q), Vector(q)}};
   for (Index a = 0; a < q; ++a) {
     const invariant::SupportPair& h = rows[static_cast<std::size_t>(a)];
-    const rounding::Range width = rounding::norm_1(direct.G.row(a).transpose()),
-                          center{direct.c[a], direct.c[a]};
-    const rounding::Range plus = rounding::add(rounding::add(h.plus, width), center);
-    const rounding::Range minus = rounding::subtract(rounding::add(h.minus, width), center);
+    const Interval width = rounding::norm_1(direct.G.row(a).transpose()),
+                   center{direct.c[a], direct.c[a]};
+    const Interval plus = rounding::add(rounding::add(h.plus, width), center);
+    const Interval minus = rounding::subtract(rounding::add(h.minus, width), center);
     limit.outer.upper[a] = plus.upper;
     limit.outer.lower[a] = -minus.upper;
     limit.inner.upper[a] = plus.lower;

@@ -66,13 +66,13 @@ StateBounds::StateBounds(const ModeBank& bank, const std::vector<ModeDynamics>& 
     const Vector d = directions.row(k).transpose();
     const invariant::SwitchedSupports h =
         invariant::switched_supports(*decay_, drives_, starts_, d, accuracy_);
-    computed_.emplace_back(d, rounding::Range{-h.minus, h.plus});
+    computed_.emplace_back(d, Interval{-h.minus, h.plus});
   }
 }
 
 /// The bound along a direction that is known, times a factor, and what is left of the row by the
 /// bounds of the coordinates.
-rounding::Range StateBounds::along(VectorIn row) const {
+Interval StateBounds::along(VectorIn row) const {
   const Index n = row.size();
   for (const auto& [d, range] : computed_) {
     const double length = d.squaredNorm();
@@ -82,7 +82,7 @@ rounding::Range StateBounds::along(VectorIn row) const {
     if (!(rest.norm() <= parallel * row.norm())) continue;
     double slack = 0;
     for (Index i = 0; i < n; ++i) {
-      const rounding::Range& x = computed_[static_cast<std::size_t>(i)].second;
+      const Interval& x = computed_[static_cast<std::size_t>(i)].second;
       const double error =
           std::abs(rest[i]) + 4 * rounding::unit * (std::abs(row[i]) + std::abs(factor * d[i]));
       slack += error * std::max(std::abs(x.lower), std::abs(x.upper));
@@ -106,7 +106,7 @@ Zonotope StateBounds::image(const Matrix& T) const {
   }
   Vector center(T.rows()), radius(T.rows());
   for (Index i = 0; i < T.rows(); ++i) {
-    const rounding::Range range = along(T.row(i).transpose());
+    const Interval range = along(T.row(i).transpose());
     center[i] = 0.5 * range.lower + 0.5 * range.upper;
     radius[i] = rounding::up(std::max(range.upper - center[i], center[i] - range.lower));
   }

@@ -32,13 +32,13 @@ class StateBounds {
   Vector magnitude(const Matrix& T) const;
 
  private:
-  rounding::Range along(VectorIn row) const;
+  Interval along(VectorIn row) const;
 
   std::optional<sets::Zonotope> set_;
   std::optional<invariant::Decay> decay_;
   std::vector<sets::Zonotope> drives_, starts_;
   double accuracy_;
-  std::vector<std::pair<Vector, rounding::Range>>
+  std::vector<std::pair<Vector, Interval>>
       computed_;  // along the axes, and along the rows of the first mode's C
 };
 

@@ -91,13 +91,13 @@ Verdict check_volume(const Context& context, const TestCase& test) {
   if (!test.tame() && !Reference(test.set(0).form).robust()) return Verdict::inapplicable();
   const Volume found = X.set->volume();
   const double tolerance = 1e-9 * std::pow(std::max(X.size, 1e-30), static_cast<double>(n));
-  const rounding::Range least = known.volume();
+  const Interval least = known.volume();
   if (!(found.value >= least.lower - tolerance)) {
     return Verdict::fails("the set has a volume of " + describe(least.lower) + ", its bound is " +
                           describe(found.value));
   }
   if (!found.exact || !X.equal) return {};
-  const rounding::Range exact = Polytope::from(X.form).volume();
+  const Interval exact = Polytope::from(X.form).volume();
   if (!(found.value <= exact.upper * (1 + 1e-7) + tolerance)) {
     return Verdict::fails("the volume is claimed exact and is " + describe(found.value) +
                           ", that of the exported form is " + describe(exact.upper));

@@ -8,7 +8,7 @@ namespace cordon::rounding {
 namespace {
 
 /// The exact value lies within `error` of `value`; an overflow widens to the whole line.
-Range widen(double value, double error) {
+Interval widen(double value, double error) {
   if (!std::isfinite(value) || !std::isfinite(error)) {
     return {-infinity, infinity};
   }
@@ -17,20 +17,20 @@ Range widen(double value, double error) {
 
 }  // namespace
 
-Range sum(VectorIn x) {
+Interval sum(VectorIn x) {
   const double magnitude = x.size() ? x.cwiseAbs().sum() : 0.0;
   // the computed magnitude is itself off by at most gamma: one gamma of the next size covers both
   return widen(x.size() ? x.sum() : 0.0, up(gamma(2 * x.size() + 2) * magnitude));
 }
 
-Range dot(VectorIn x, VectorIn y) {
+Interval dot(VectorIn x, VectorIn y) {
   const Index n = x.size();
   if (n == 0) return {0.0, 0.0};
   const double magnitude = x.cwiseAbs().dot(y.cwiseAbs());
   return widen(x.dot(y), up(up(gamma(2 * n + 4) * magnitude) + static_cast<double>(n + 1) * tiny));
 }
 
-Range norm_1(VectorIn x) { return sum(x.cwiseAbs()); }
+Interval norm_1(VectorIn x) { return sum(x.cwiseAbs()); }
 
 Matrix product_error(MatrixIn A, MatrixIn B) {
   const Index n = A.cols();

@@ -287,7 +287,7 @@ std::optional<Vector> repair_radius(MatrixIn A, VectorIn b, VectorIn xi, VectorI
 
   Vector gap(m);  // |b - A ξ|, rounded up
   for (Index i = 0; i < m; ++i) {
-    const rounding::Range product = rounding::dot(rows.row(i).transpose(), xi);
+    const Interval product = rounding::dot(rows.row(i).transpose(), xi);
     gap[i] = std::max(std::abs(rounding::up(right[i] - product.lower)),
                       std::abs(rounding::down(right[i] - product.upper)));
     if (unsure[i] > 0) gap[i] = rounding::up(gap[i] + unsure[i]);

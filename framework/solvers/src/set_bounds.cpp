@@ -56,10 +56,10 @@ bool is_zonotope(const LineForm& X) { return X.lines() == 0 && X.constraints() =
 
 /// dᵀc + ‖Gᵀd‖₁, with its rounding errors: no program is needed. Unbounded on both sides where it
 /// overflows.
-rounding::Range support_of_zonotope(const LineForm& X, VectorIn d) {
+Interval support_of_zonotope(const LineForm& X, VectorIn d) {
   const Vector gradient = linalg::transposed_product(X.G, d);
   if (!gradient.allFinite()) return {-infinity, infinity};
-  const rounding::Range h = rounding::add(rounding::dot(d, X.c), rounding::norm_1(gradient));
+  const Interval h = rounding::add(rounding::dot(d, X.c), rounding::norm_1(gradient));
   const double error = rounding::product_error(X.G.transpose(), d).sum();
   return {rounding::down(h.lower - error), rounding::up(h.upper + error)};
 }

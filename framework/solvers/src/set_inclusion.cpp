@@ -149,7 +149,7 @@ Answer within_box(const LineForm& X, const LineForm& Y) {
   const Box outer = interval_hull(X);
   for (Index i = 0; i < Y.dim(); ++i) {
     if (Y.lines() > 0 && !Y.M.row(i).isZero(0)) continue;
-    const rounding::Range radius = rounding::norm_1(Y.G.row(i).transpose());
+    const Interval radius = rounding::norm_1(Y.G.row(i).transpose());
     const bool one = (Y.G.row(i).array() != 0).count() <= 1;
     const double reach =
         one ? (Y.generators() ? Y.G.row(i).cwiseAbs().maxCoeff() : 0.0) : radius.lower;

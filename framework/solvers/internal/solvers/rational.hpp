@@ -46,7 +46,7 @@ RationalMatrix product(const RationalMatrix& A, const RationalMatrix& B);
 
 /// The largest double below or at q and the smallest one above or at q; ±inf beyond the range of
 /// doubles.
-rounding::Range enclose(const Rational& q);
+Interval enclose(const Rational& q);
 /// The nearest double; an infinity beyond the range of doubles.
 double nearest(const Rational& q);
 

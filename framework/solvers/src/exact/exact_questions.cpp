@@ -117,7 +117,7 @@ Support support(const LineForm& X, const RationalVector& d) {
   return {Support::Kind::finite, result.value + rational::dot(d, rational::exact(X.c))};
 }
 
-rounding::Range support(const LineForm& X, VectorIn d) {
+Interval support(const LineForm& X, VectorIn d) {
   check(X, "exact::support");
   if (d.size() != X.dim())
     throw Error(Errc::dimension,
@@ -145,7 +145,7 @@ Matrix lineality_space(const LineForm& X) {
   return columns;
 }
 
-rounding::Range maximum(VectorIn c, MatrixIn K, VectorIn r, const std::vector<int>& bits) {
+Interval maximum(VectorIn c, MatrixIn K, VectorIn r, const std::vector<int>& bits) {
   const Index columns = K.cols(), rows = K.rows();
   if (c.size() != columns || r.size() != rows || static_cast<Index>(bits.size()) != columns) {
     throw Error(Errc::dimension, "exact::maximum: the sizes of c, K, r and the bounds do not fit");

@@ -238,7 +238,7 @@ bool operator==(const Polytope& X, const Polytope& Y) {
   return X.dim() == Y.dim() && X.contains(Y) && Y.contains(X);
 }
 
-rounding::Range Polytope::support(VectorIn d) const {
+Interval Polytope::support(VectorIn d) const {
   require(d.size() == dim(), "the direction has another dimension than the set");
   require_finite(d, "the direction");
   RationalVector direction = rational::exact(d);
@@ -254,10 +254,10 @@ rounding::Range Polytope::support(VectorIn d) const {
       largest = value;
     }
   }
-  return largest ? rational::enclose(*largest) : rounding::Range{-infinity, -infinity};
+  return largest ? rational::enclose(*largest) : Interval{-infinity, -infinity};
 }
 
-rounding::Range Polytope::volume() const {
+Interval Polytope::volume() const {
   const Description& generators = representation_->generators();
   if (generators.rows.empty()) return {0, 0};
   if (!is_bounded()) throw Error(Errc::unsupported, "polytope: an unbounded set has no volume");

@@ -81,7 +81,7 @@ RationalMatrix product(const RationalMatrix& A, const RationalMatrix& B) {
   return C;
 }
 
-rounding::Range enclose(const Rational& q) {
+Interval enclose(const Rational& q) {
   constexpr double largest = std::numeric_limits<double>::max();
   if (q > Rational(largest)) return {largest, infinity};
   if (q < Rational(-largest)) return {-infinity, -largest};
@@ -93,7 +93,7 @@ rounding::Range enclose(const Rational& q) {
 }
 
 double nearest(const Rational& q) {
-  const rounding::Range range = enclose(q);
+  const Interval range = enclose(q);
   if (range.lower == range.upper) return range.lower;
   if (std::isinf(range.lower) || std::isinf(range.upper))
     return std::isinf(range.lower) ? range.lower : range.upper;

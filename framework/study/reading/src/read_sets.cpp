@@ -258,7 +258,7 @@ LineForm make_polytope(const Box& box, MatrixIn H, VectorIn h) {
   X.A.leftCols(g) = linalg::product(H, B.G);
   const Matrix error = rounding::product_error(H, B.G);
   for (Index i = 0; i < m; ++i) {
-    const rounding::Range left =
+    const Interval left =
         rounding::subtract({h[i], h[i]}, rounding::dot(H.row(i).transpose(), B.c));  // h_i - H_i c
     const double row_error = rounding::norm_1(error.row(i).transpose()).upper;
     const double largest = rounding::up(

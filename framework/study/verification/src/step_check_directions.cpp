@@ -132,7 +132,7 @@ void StepCheck::along(const Vector& d, Along& by) {
   if (allowed == infinity && needed == infinity && row_.set.lines() > 0) return;
   if (settled(bound)) return;
   try {
-    const rounding::Range exact = exact::support(by.successors, d);
+    const Interval exact = exact::support(by.successors, d);
     const bool misses = exact.lower > allowed + slack && exact.lower < infinity;
     if (misses && nominal_) slack += by.moved(d);
     const bool by_rounding =

@@ -40,7 +40,7 @@ class Decay {
 
 /// h(d) and h(-d), each between bounds that hold for the numbers as stored.
 struct SupportPair {
-  rounding::Range plus, minus;
+  Interval plus, minus;
 };
 
 /// The minimal invariant sets Ω_i = Σ_k Aᵏ D_i of several disturbance sets in one direction:

@@ -5,11 +5,9 @@
 // absolute term.
 #pragma once
 
-#include <bit>
-#include <cmath>
-#include <cstdint>
 #include <limits>
 
+#include "cordon/core/interval.hpp"
 #include "cordon/core/types.hpp"
 
 namespace cordon::rounding {
@@ -18,31 +16,20 @@ inline constexpr double unit = std::numeric_limits<double>::epsilon() / 2;  ///<
 inline constexpr double tiny =
     std::numeric_limits<double>::min();  ///< covers underflow, one per operation
 
-/// The next double above or below; infinities and NaN stay. Doubles of one sign are ordered like
-/// their bits.
-inline double up(double x) {
-  if (!(x < infinity)) return x;
-  if (x == 0) return std::numeric_limits<double>::denorm_min();
-  const auto bits = std::bit_cast<std::uint64_t>(x);
-  return std::bit_cast<double>(x > 0 ? bits + 1 : bits - 1);
-}
-inline double down(double x) { return -up(-x); }
-
-/// An interval that contains the exact value.
-struct Range {
-  double lower, upper;
-};
-
 /// γₙ = n u / (1 - n u), itself rounded up.
 inline double gamma(Index n) {
   return up(static_cast<double>(n) * unit / (1 - static_cast<double>(n) * unit)) * (1 + 4 * unit);
 }
 
-Range sum(VectorIn x);              ///< Σ x_i
-Range dot(VectorIn x, VectorIn y);  ///< xᵀy
-Range norm_1(VectorIn x);           ///< ‖x‖₁
-inline Range add(Range a, Range b) { return {down(a.lower + b.lower), up(a.upper + b.upper)}; }
-inline Range subtract(Range a, Range b) { return {down(a.lower - b.upper), up(a.upper - b.lower)}; }
+Interval sum(VectorIn x);              ///< Σ x_i
+Interval dot(VectorIn x, VectorIn y);  ///< xᵀy
+Interval norm_1(VectorIn x);           ///< ‖x‖₁
+inline Interval add(Interval a, Interval b) {
+  return {down(a.lower + b.lower), up(a.upper + b.upper)};
+}
+inline Interval subtract(Interval a, Interval b) {
+  return {down(a.lower - b.upper), up(a.upper - b.lower)};
+}
 
 /// Upper bound of |A B - fl(A B)|, entrywise, for fl in any order of summation.
 Matrix product_error(MatrixIn A, MatrixIn B);

@@ -25,7 +25,7 @@ Answer contains(const LineForm& X, VectorIn x);
 
 /// h_X(d) = sup{dᵀx : x ∈ X} between two neighbouring doubles (one, if it is a double); (+inf,
 /// +inf) if unbounded, (-inf, -inf) if X is empty.
-rounding::Range support(const LineForm& X, VectorIn d);
+Interval support(const LineForm& X, VectorIn d);
 
 /// A basis of the directions in which X is unbounded, if it is not empty: {Mδ : Sδ = 0}, eliminated
 /// exactly and rounded at the end. The largest entry of every column is in [1/2, 2). No limit of
@@ -35,7 +35,7 @@ Matrix lineality_space(const LineForm& X);
 /// max{cᵀx : K x = r, 0 ≤ x_j ≤ 2^bits_j} between two neighbouring doubles; (-inf, -inf) if there
 /// is no such x. One entry of `bits` per column of K, and products of K's entries with 2^(bits_j -
 /// 1) must be doubles: else Errc::invalid.
-rounding::Range maximum(VectorIn c, MatrixIn K, VectorIn r, const std::vector<int>& bits);
+Interval maximum(VectorIn c, MatrixIn K, VectorIn r, const std::vector<int>& bits);
 
 inline constexpr Index max_columns = 2000, max_rows = 100, max_work = 2'000'000;
 

@@ -54,10 +54,10 @@ class Polytope {
   Polytope convex_hull(const Polytope& Y) const;               ///< closure of conv(X ∪ Y)
 
   /// h(d) = sup{dᵀx} between neighbouring doubles; ±inf as in exact::support.
-  rounding::Range support(VectorIn d) const;
+  Interval support(VectorIn d) const;
   /// Volume of a bounded polytope between neighbouring doubles; 0 if flat or empty, 1 for the point
   /// of n = 0. Errc::unsupported if unbounded, for n > 6, and beyond 200,000 simplices.
-  rounding::Range volume() const;
+  Interval volume() const;
   Box interval_hull() const;  ///< rounded outward to neighbouring doubles
 
   /// Generators and inequalities without redundancy, rounded to the nearest double each (rays,
