@@ -73,7 +73,8 @@ std::string inputs_table(const Matrix& u, const Labels& labels, const Paint& pai
 
 /// The designer's κ, as computed, as far as it agrees with what is proven.
 double shown_kappa(double kappa, const ExactPair* proven) {
-  if (proven && proven->disjoint == Answer::yes) return std::max(kappa, proven->kappa_lower);
+  if (proven && proven->disjoint == Answer::yes)
+    return std::isnan(kappa) ? proven->kappa_lower : std::max(kappa, proven->kappa_lower);
   if (proven && proven->disjoint == Answer::no) return std::min(kappa, 0.0);
   return kappa;
 }
@@ -188,8 +189,12 @@ std::string horizon_text(const DesignOutcome& outcome) {
   return text;
 }
 
-std::string reason_text(const DesignOutcome& outcome) {
-  std::string text = outcome.reason.empty() ? "" : fmt::format("{}\n", outcome.reason);
+std::string reason_text(const DesignOutcome& outcome, const ExactSeparation* exact) {
+  // What the designer leaves open may be decided in exact arithmetic.
+  const bool is_decided = outcome.best && outcome.best->separates() == Answer::unknown && exact &&
+                          exact->separates() != Answer::unknown;
+  std::string text =
+      outcome.reason.empty() || is_decided ? "" : fmt::format("{}\n", outcome.reason);
   if (!outcome.suggestion.empty()) text += fmt::format("To try: {}\n", outcome.suggestion);
   return text;
 }

@@ -21,7 +21,7 @@ std::string status_text(const DesignOutcome& outcome, const std::string& designe
 /// What was searched in place of the problem.
 std::string restriction_text(const DesignOutcome& outcome);
 std::string horizon_text(const DesignOutcome& outcome);
-std::string reason_text(const DesignOutcome& outcome);
+std::string reason_text(const DesignOutcome& outcome, const ExactSeparation* exact);
 std::string search_text(const DesignOutcome& outcome, double design_s);
 std::string refuted_text(const Names& refuted, const Paint& paint);
 

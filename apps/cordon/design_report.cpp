@@ -27,7 +27,7 @@ std::string design_text(const Study& study, const PipelineDesign& design, const 
     const DesignOutcome& outcome = *design.outcome;
     const ExactSeparation* exact = design.exact ? &*design.exact : nullptr;
     text += status_text(outcome, design.designer, exact, paint) + "\n" + restriction_text(outcome) +
-            horizon_text(outcome) + reason_text(outcome);
+            horizon_text(outcome) + reason_text(outcome, exact);
     if (outcome.best) text += input_text(study.labels, modes, *outcome.best, exact, paint);
     text += refuted_text(design.refuted, paint) + search_text(outcome, design.design_s);
   }
@@ -187,7 +187,7 @@ std::string design_text(const Study& study, const PipelineOutcome& pipeline, con
     const DesignOutcome& outcome = *found.design;
     const ExactSeparation* exact = found.exact ? &*found.exact : nullptr;
     text += status_text(outcome, found.designer, exact, paint) + "\n" + restriction_text(outcome) +
-            horizon_text(outcome) + reason_text(outcome);
+            horizon_text(outcome) + reason_text(outcome, exact);
     if (outcome.best) {
       text += input_text(study.labels, modes, *outcome.best, exact, paint);
       if (found.diagnoser.empty())

@@ -23,9 +23,9 @@ class IntervalObserver final : public Observer {
   std::vector<Gain> gains() const override;
   bool takes_missing_outputs() const override { return true; }
   bool uses_outputs_of_its_time() const override { return false; }
-  std::optional<Box> inner_estimate() const override { return inner_.hull(); }
 
  private:
+  std::optional<Box> do_inner_estimate() const override { return inner_.hull(); }
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override;
   Enclosure do_step(const Sample& before, const Sample& now) override;
   void do_replace(const Enclosure& X) override;

@@ -31,9 +31,9 @@ class ZonotopeUncertain final : public Observer {
   bool follows_its_sets() const override { return !limit_.is_set(); }
   bool takes_missing_outputs() const override { return true; }
   bool uses_outputs_of_its_time() const override { return false; }
-  std::optional<Box> inner_estimate() const override { return inner_.hull(); }
 
  private:
+  std::optional<Box> do_inner_estimate() const override { return inner_.hull(); }
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
     X_ = X0 ? *X0 : backend().import(X0_);
     limit_.start(recursion_.complete(), X_);

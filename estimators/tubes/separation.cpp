@@ -165,7 +165,8 @@ std::vector<PairProgram> pair_programs(const std::vector<OutputTube>& tubes) {
 PairSeparation separation(const PairProgram& pair, VectorIn u) {
   PairSeparation result{pair.i, pair.j, -1, -1, Answer::no, {Certificate::Kind::structure, {}, 0}};
   if (pair.rows() == 0 && pair.vanished == 0) return result;  // nothing to violate
-  if (pair.rows() == 0) {
+  if (pair.rows() == 0) {  // what the equations that vanished would say is not known
+    result.kappa = std::numeric_limits<double>::quiet_NaN();
     result.disjoint = Answer::unknown;
     result.why = {};
     return result;

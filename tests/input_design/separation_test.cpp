@@ -112,6 +112,32 @@ TEST_CASE("κ of random models agrees with the rational emptiness of the interse
   }
 }
 
+TEST_CASE("a pair of which no equation is left has no κ, and whether its tubes meet is open") {
+  Model model;
+  LinearModel& m = model.linear;
+  m.A = (Matrix(2, 2) << -1.5, -1.375, .75, 0).finished();
+  m.B = numbers({-.25, 0});
+  m.Bw = numbers({-.375, -.25});
+  m.C = (Matrix(1, 2) << -.625, .5).finished();
+  m.D = Matrix::Zero(1, 1);
+  m.Dv = Matrix::Zero(1, 0);
+  model.X0 = make_space(2);
+  model.W = examples::cube(1, .125);
+  model.V = make_space(0);
+  model.U = examples::cube(1, 1);
+  ModeBank bank;
+  for (const char* name : {"healthy", "weak"}) bank.modes.push_back({name, model});
+  bank.modes[1].model.linear.B *= .5;
+  const std::vector<OutputTube> tubes = tubes_of(bank, 3);
+  const PairProgram pair = pair_program(0, tubes[0], 1, tubes[1]);
+  REQUIRE(pair.rows() == 0);
+  REQUIRE(pair.vanished > 0);
+  const PairSeparation found = separation(pair, numbers({0, 1, 0, -1}));
+  CHECK(std::isnan(found.kappa));  // in rationals it is -0.51375
+  CHECK(found.kappa_lower == -1);
+  CHECK(found.disjoint == Answer::unknown);
+}
+
 TEST_CASE("κ is convex in the inputs") {
   const std::vector<PairProgram> pairs =
       pair_programs(tubes_of(examples::four_descriptor_models(), 3));

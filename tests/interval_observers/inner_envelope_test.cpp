@@ -83,6 +83,34 @@ TEST_CASE("inside the hull of every observer") {
   }
 }
 
+TEST_CASE("an admissible set that leaves nothing ends the inner estimate: it knows nothing of it") {
+  const auto one = [](double x) { return Matrix::Constant(1, 1, x); };
+  Model model;
+  model.linear = {{}, one(.5), one(1), one(1), one(1), one(0), one(1)};
+  model.X0 = cordon::make_box({Vector::Zero(1), Vector::Ones(1)});
+  model.W = cordon::make_box({-one(.125).col(0), one(.125).col(0)});
+  model.V = cordon::make_box({-Vector::Ones(1), Vector::Ones(1)});
+  const cordon::LineForm admissible = cordon::make_box({one(-4).col(0), one(4).col(0)});
+  for (const char* name : {"interval_trajectory", "integrated", "zonotope_uncertain"}) {
+    CAPTURE(name);
+    const auto observer = registry().make<cordon::ObserverEntry>(
+        name, {model, backend("interval")},
+        with_samples(with_gain(one(.5)), 3).set("admissible_set", admissible));
+    const auto step = [&](Index k, double u) {
+      return observer->step({k, Vector::Constant(1, u), Vector::Constant(1, .5)});
+    };
+    CHECK(step(0, 10).consistent == Answer::yes);
+    CHECK(observer->inner_estimate());
+    CHECK(step(1, 0).consistent == Answer::no);  // x_1 is 10 or so
+    CHECK(!observer->inner_estimate());
+    CHECK(step(2, 0).consistent == Answer::no);
+    CHECK(!observer->inner_estimate());
+    observer->start();
+    CHECK(step(0, 0).consistent == Answer::yes);
+    CHECK(observer->inner_estimate());
+  }
+}
+
 TEST_CASE("exact matrices and a monotone gain: the inner estimate is the estimate") {
   for (const comparison::PublishedWidths& published : comparison::trajectories()) {
     const Model model = comparison::plant(published.plant);

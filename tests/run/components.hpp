@@ -89,15 +89,15 @@ class Offering final : public Recursive {
         std::numeric_limits<double>::infinity();
     return {designed, given};
   }
-  std::optional<Box> inner_estimate() const override {
+
+ private:
+  std::optional<Box> do_inner_estimate() const override {
     if (k_ < 2) return std::nullopt;
     const Box hull = X_.set->interval_hull();
     const Vector center = hull.center(), radius = (k_ < 7 ? scale_ : later_) * hull.radius();
     const Index n = hull.dim() - (cut_ ? 1 : 0);
     return Box{(center - radius).head(n), (center + radius).head(n)};
   }
-
- private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
     return X_ = Recursive::do_start(X0, first);
   }

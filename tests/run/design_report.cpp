@@ -112,7 +112,16 @@ TEST_CASE("a design on paper") {
   CHECK(has(text(d), "the modes are separated (proven)\n"));
   d.exact = exact(Answer::no);
   CHECK(has(text(d), "the modes are not separated (proven)\n"));
+  // What the designer leaves open and exact arithmetic decides is open no more.
+  d.outcome->reason = "whether they can be the same is not decided";
+  CHECK(has(text(d), "not decided"));
+  d.outcome->best->pairs[0].disjoint = Answer::unknown;
+  d.outcome->best->pairs[0].kappa = not_available;
+  CHECK_FALSE(has(text(d), "not decided"));
+  d.exact = exact(Answer::yes);
+  CHECK_FALSE(has(text(d), "not decided"));
   d.exact.reset();
+  CHECK(has(text(d), "whether they can be the same is not decided"));
   d.outcome->best->empty[1] = Answer::yes;
   CHECK(has(text(d), "Modelling error: no output of leak fits this input"));
 }

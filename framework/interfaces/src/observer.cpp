@@ -103,7 +103,7 @@ void Observer::start(std::optional<Enclosure> X0) {
   }
   X0_ = std::move(X0);
   before_.reset();
-  inconsistent_ = false;
+  inconsistent_ = is_cut_to_nothing_ = false;
   inherited_ = last_inherited_ = Tightness::exact;
   left_out_.clear();
   contradiction_.reset();
@@ -171,6 +171,7 @@ Estimate Observer::advance(const Sample& now) {
     const Stopwatch watch(times_.question);
     estimate.consistent = negate(estimate.set->is_empty(&estimate.why));
   }
+  is_cut_to_nothing_ = is_cut_to_nothing_ || (is_cut && estimate.consistent == Answer::no);
   if (is_cut && estimate.consistent != Answer::no) do_replace(estimate.set);
   return estimate;
 }

@@ -104,8 +104,11 @@ class Observer {
 
   /// A box inside the hull of the last estimate, made of trajectories that the observer must
   /// enclose: what is left between the two is the price of the enclosure. Never an enclosure
-  /// itself. Nothing: not offered.
-  virtual std::optional<Box> inner_estimate() const { return std::nullopt; }
+  /// itself. Nothing: not offered, or an admissible set has cut estimates, of which the
+  /// trajectories know nothing.
+  std::optional<Box> inner_estimate() const {
+    return is_cut_to_nothing_ ? std::nullopt : do_inner_estimate();
+  }
 
  protected:
   Observer(Model model, std::shared_ptr<const SetBackend> backend)
@@ -137,6 +140,7 @@ class Observer {
   virtual Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) = 0;
   virtual Enclosure do_step(const Sample& before, const Sample& now) = 0;
   virtual void do_replace(const Enclosure& X) = 0;
+  virtual std::optional<Box> do_inner_estimate() const { return std::nullopt; }
 
   class Stopwatch {
    public:
@@ -175,6 +179,7 @@ class Observer {
   /// left out; and at `before_`.
   Tightness inherited_ = Tightness::exact, last_inherited_ = Tightness::exact;
   bool inconsistent_ = false;
+  bool is_cut_to_nothing_ = false;  ///< by the admissible set, since the start
   Index most_outliers_ = 0, outlier_window_ = 1;
   std::vector<Index> outlier_times_;  ///< of the window, ascending
   std::vector<Index> left_out_;
