@@ -123,19 +123,22 @@ class Poles final : public GainDesigner {
   std::vector<Pole> poles_;
 };
 
+std::string numbers(Index count) {
+  return std::to_string(count) + (count == 1 ? " number" : " numbers");
+}
+
 std::vector<Diagnostic> check_poles(const GainContext& context, const Params& params) {
   const Index n = context.model.linear.states(), count = params.vector("poles").size();
   std::vector<Diagnostic> problems;
   if (count != n) {
-    problems.push_back(
-        {"/poles",
-         "holds " + std::to_string(count) + " numbers, there are " + std::to_string(n) + " states",
-         "give the real part of every pole"});
+    problems.push_back({"/poles",
+                        "holds " + numbers(count) + ", there are " + std::to_string(n) + " states",
+                        "give the real part of every pole"});
   }
   if (params.has("poles_imaginary") && params.vector("poles_imaginary").size() != count) {
     problems.push_back({"/poles_imaginary",
-                        "holds " + std::to_string(params.vector("poles_imaginary").size()) +
-                            " numbers, poles holds " + std::to_string(count),
+                        "holds " + numbers(params.vector("poles_imaginary").size()) +
+                            ", poles holds " + std::to_string(count),
                         "give one for every pole, 0 for real ones"});
   }
   if (!problems.empty()) return problems;

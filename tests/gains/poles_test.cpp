@@ -188,9 +188,9 @@ TEST_CASE("numbers that make no sense are refused, each with its place") {
       return d.pointer == pointer && d.message.find(words) != std::string::npos;
     });
   };
-  CHECK(has(poles(Vector{{.1}}), "/poles", "holds 1 numbers, there are 2 states"));
+  CHECK(has(poles(Vector{{.1}}), "/poles", "holds 1 number, there are 2 states"));
   CHECK(has(poles(Vector{{.1, .2}}, Vector{{.1}}), "/poles_imaginary",
-            "holds 1 numbers, poles holds 2"));
+            "holds 1 number, poles holds 2"));
   CHECK(has(poles(Vector{{.1, 1}}), "/poles", "1 lies outside the unit circle"));
   CHECK(has(poles(Vector{{.1, .1}}, Vector{{.2, .2}}), "/poles_imaginary",
             "0.1 + 0.2i has no conjugate"));

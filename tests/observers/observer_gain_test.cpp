@@ -107,7 +107,7 @@ TEST_CASE("problems of a gain are told at their place") {
     return found[0].suggestion;
   };
   const Model tanks = interval_plants::two_tanks();
-  only(designer("poles", Params().set("poles", Vector{{.5}})), "/gain/poles", "holds 1 numbers",
+  only(designer("poles", Params().set("poles", Vector{{.5}})), "/gain/poles", "holds 1 number",
        tanks);
   only(designer("poles", Params().set("poles", Vector{{.5, .5}})), "/gain", "asked for 2 times",
        tanks);

@@ -93,7 +93,7 @@ const Mistake starts[] = {
     {start, "{\"type\": \"box\", \"lower\": [0, NaN], \"upper\": [0, 0]}",
      "/data/simulate/x0/lower/1", "NaN is not a number", "finite"},
     {start, "3", "/data/simulate/x0", "is a number, must be a list", "bounded set"},
-    {start, "[0, 1, 2]", "/data/simulate/x0", "has 3 numbers, must have 2", ""},
+    {start, "[0, 1, 2]", "/data/simulate/x0", "has 3 numbers, must have 2", "a decimal comma"},
     {start, "[9, 1]", "/data/simulate/x0", "lies outside X0", "widen that set"},
     {start, "[0, 2.1]", "/data/simulate/x0", "lies outside X0", "widen that set"},
     {start, "[1.25, 1.75]", "/data/simulate/x0",

@@ -276,6 +276,7 @@ const Mistake syntax[] = {
      "write the minus sign as -"},
     {"\"C\": [[1, 0]]", "\"C\": [[1, 0.]]", "/system/C/0/1",
      "a digit is missing after the decimal point", ""},
+    {"\"C\": [[1, 0]]", "\"C\": [[1,05, 0]]", "/system/C/0/1", "superfluous 0", "a decimal comma"},
     {"\"C\": [[1, 0]]", "\"C\": [[1, 00]]", "/system/C/0/1", "superfluous 0", "07"},
     {"\"C\": [[1, 0]]", "\"C\": [[1, True]]", "/system/C/0/1", "unknown word \"True\"",
      "true, false and null"},

@@ -56,6 +56,7 @@ TEST_CASE_FIXTURE(Runs, "what cannot be put there is an error with its place") {
     CAPTURE(settings);
     CHECK(outcome.code == 2);
     CHECK_MESSAGE(outcome.complains(what), outcome.err);
+    CHECK_MESSAGE(!outcome.complains("(line "), outcome.err);  // it is on none of the file
     CHECK_FALSE(std::filesystem::exists(scratch / "out"));
   };
   refused("--set /pipelines/*/observer/max_generator=12", "max_generators");

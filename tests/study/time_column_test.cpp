@@ -83,12 +83,31 @@ TEST_CASE("irregular times are errors with the line, each told once") {
   CHECK_FALSE(Run("t,u,y\n10,1,0\n10.5,1,0\n11.2,1,0\n11.7,1,0\n").outcome.says("line 5"));
   check_refused("t,u,y\n10,1,0\n10.5,1,0\n10.5,1,0\n",
                 "(line 4): column \"t\": is 10.5 after 10.5 in the row before: times must grow");
+  // A single wrong time: those behind it are told from the first row.
+  const Run wrong("t,u,y\n10,1,0\n10.5,1,0\n11.2,1,0\n11.5,1,0\n12.1,1,0\n12.5,1,0\n");
+  CHECK(wrong.outcome.says("the first row's 10: 2.4 steps"));
+  CHECK(wrong.outcome.says("the first row's 10: 4.2 steps"));
+  CHECK_FALSE(wrong.outcome.says("line 5"));
+  CHECK_FALSE(wrong.outcome.says("line 7"));
+  CHECK_FALSE(Run("t,u,y\n10,1,0\n10.5,1,0\n1e30,1,0\n11.5,1,0\n").outcome.says("line 5"));
   check_refused("t,u,y\n10,1,0\n10.5,1,0\n10.501,1,0\n", "of the same step as the row before");
   check_refused("t,u,y\n10,1,0\n,1,0\n", "(line 3): column \"t\"");
   check_refused("u,y\n1,0\n", "there is no column \"t\" in the header");
-  check_refused("t,u,y\n0,1,0\n1e300,1,0\n", "no multiple of the sampling time",
+  check_refused("t,u,y\n0,1,0\n1e300,1,0\n", "1e+300 after the first row's 0",
                 {{"irregular", "gaps"}});
   check_refused("t,u,y\n0,1,0\n1e8,1,0\n", "split the data there", {{"irregular", "gaps"}});
+}
+
+TEST_CASE("a sampling time in another unit than the column is told once, with what it would be") {
+  for (const char* apart : {"0.005", "0.25", "500"}) {
+    const double step = std::stod(apart);
+    std::string csv = "t,u,y\n";
+    for (int k = 0; k < 9; ++k) csv += std::to_string(k * step) + ",1,0\n";
+    const Run run(csv);
+    CHECK(run.outcome.code == 2);
+    CHECK_MESSAGE(run.outcome.says("1 error"), run.outcome.out);
+    CHECK_MESSAGE(run.outcome.says(std::string("\"sampling_time\" is ") + apart), run.outcome.out);
+  }
 }
 
 TEST_CASE("steps that rows leave out are steps without outputs, with the input before") {

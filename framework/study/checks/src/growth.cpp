@@ -26,10 +26,13 @@ void GrowthWatch::step(Index k, const Box& hull) {
     width.last = now;
     width.largest = std::max(width.largest, now);
     const double size = std::max(std::abs(hull.lower[i]), std::abs(hull.upper[i]));
-    if (now > flat * size && (width.smallest_at < 0 || now < width.smallest)) {
-      width.smallest = now;
-      width.smallest_at = k;
-    }
+    if (!(now > flat * size)) continue;
+    width.recent[static_cast<std::size_t>(width.samples++) % width.recent.size()] = {k, now};
+    if (width.samples < static_cast<Index>(width.recent.size())) continue;
+    const double lasting = std::ranges::max(width.recent, {}, &Sample::width).width;
+    if (width.smallest_at >= 0 && lasting >= width.smallest) continue;
+    width.smallest = lasting;
+    width.smallest_at = std::ranges::min(width.recent, {}, &Sample::k).k;
   }
 }
 
@@ -53,7 +56,8 @@ namespace cordon {
 std::string advice_on(const WidthGrowth&) {
   return "either the outputs do not bound this state and the plant lets errors grow, or what "
          "reductions add in every step adds "
-         "up: allow more generators (max_generators), use \"reduction\": \"adaptive\" or \"qr\", "
+         "up: allow more generators (max_generators; of constrained sets max_constraints too), use "
+         "\"reduction\": \"adaptive\" or \"qr\", "
          "or an observer with a gain that "
          "makes A - L C stable and a widening_limit";
 }

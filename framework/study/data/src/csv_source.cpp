@@ -128,7 +128,8 @@ void CsvSource::validate() {
     ++rows_;
   }
   if (rows_ == 0 && !too_many())
-    report("/data/csv/file", 0, "there is a header but no row of numbers");
+    report("/data/csv/file", 0, "there is a header but no row of numbers",
+           "below the header it needs a row for every step");
 }
 
 void CsvSource::locate(const CsvRow& row) {
@@ -188,17 +189,32 @@ void CsvSource::check_row(const CsvRow& row) {
   if (!row.problem.empty()) {
     report("/data/csv/file", row.line, row.problem);
   } else if (row.fields.size() != width_) {
-    report(
-        "/data/csv/file", row.line,
-        "the row has " + std::to_string(row.fields.size()) +
-            (row.fields.size() == 1 ? " field" : " fields") + ", the header " +
-            std::to_string(width_),
-        row.fields.size() > width_ ? "numbers with a decimal comma fall apart: write a point" : "");
+    report("/data/csv/file", row.line,
+           "the row has " + std::to_string(row.fields.size()) +
+               (row.fields.size() == 1 ? " field" : " fields") + ", the header " +
+               std::to_string(width_),
+           row.fields.size() > width_
+               ? "numbers with a decimal comma fall apart: write a point"
+               : "each row has a field for each column, also where it is empty");
   } else {
     for (const Columns* columns : {&inputs_, &outputs_, &truth_}) numbers(row, *columns);
     mode(row);
   }
 }
+
+namespace {
+
+/// What to do about a field that holds no number.
+std::string suggestion_for(bool is_output, bool is_missing) {
+  if (!is_output)
+    return is_missing ? "only outputs may be missing: give the value that was applied" : "";
+  return is_missing ? "with \"missing\": \"skip\" in /data/csv, observers use the other outputs of "
+                      "such samples"
+                    : "where there is no value, leave the field empty, with \"missing\": \"skip\" "
+                      "in /data/csv";
+}
+
+}  // namespace
 
 /// The numbers of a group of columns; nothing after reporting what is wrong.
 std::optional<Vector> CsvSource::numbers(const CsvRow& row, const Columns& columns) {
@@ -218,9 +234,7 @@ std::optional<Vector> CsvSource::numbers(const CsvRow& row, const Columns& colum
     good = false;
     report("/data/csv/file", row.line,
            "column " + json::in_quotes(columns.names[i]) + ": " + number.problem,
-           is_gap ? "with \"missing\": \"skip\" in /data/csv, observers use the other outputs of "
-                    "such samples"
-                  : "");
+           suggestion_for(is_output, is_missing(field)));
   }
   return good ? std::optional<Vector>(std::move(values)) : std::nullopt;
 }

@@ -13,16 +13,27 @@ namespace {
 constexpr const char* setting_form =
     "write --set /path=value, for example --set /data/simulate/seed=3";
 
+/// The same value, of no line of the file.
+Value without_lines(Value value) {
+  value.line = 0;
+  if (value.parts) {
+    Parts parts = *value.parts;
+    for (Value& item : parts.items) item = without_lines(std::move(item));
+    value.parts = std::make_shared<const Parts>(std::move(parts));
+  }
+  return value;
+}
+
 /// JSON, or the text itself where it cannot have been meant as JSON.
 Value setting_value(const std::string& text) {
   Problems problems;
   Value value = parse(text, problems);
-  if (!problems.any()) return value;
+  if (!problems.any()) return without_lines(std::move(value));
   const bool is_word =
       text.empty() || std::string("[{\"-0123456789").find(text[0]) == std::string::npos;
   if (!is_word) throw Error(Errc::invalid, "--set: " + in_quotes(text) + " is no JSON");
   problems = {};
-  return parse(detail::json_string(text), problems);
+  return without_lines(parse(detail::json_string(text), problems));
 }
 
 }  // namespace

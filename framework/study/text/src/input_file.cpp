@@ -35,6 +35,9 @@ InputFile::InputFile(std::filesystem::path path, std::string suggestion) : path_
   const char* kind = ::stat(path_.c_str(), &status) == 0 ? kind_of(status.st_mode) : nullptr;
   if (!kind) {
     descriptor_ = ::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (descriptor_ < 0 && errno == ENOTDIR)
+      refuse("there is no such file: " + path_.parent_path().string() + " is no directory",
+             "name a directory that \"cordon run\" wrote");
     if (descriptor_ < 0) {
       refuse(errno == ENOENT ? "there is no such file"
                              : std::string("cannot be read: ") + std::strerror(errno),

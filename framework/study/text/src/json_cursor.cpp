@@ -277,7 +277,7 @@ std::optional<Matrix> read_matrix(const Cursor& at) {
       ++wrong;
       row.error("has " + counted(static_cast<Index>(row.size()), "number") +
                     ", the first row has " + std::to_string(cols),
-                "all rows are of equal length");
+                "all rows are of equal length; a decimal comma makes two numbers of one");
     } else if (!read_entries(row, finite_entry, [&](std::size_t j, double x) {
                  A(static_cast<Index>(i), static_cast<Index>(j)) = x;
                })) {
@@ -334,10 +334,22 @@ std::string counted(Index number, const std::string& noun) {
   return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
+namespace {
+
+/// Is there a 0 with an integer behind it, as 0,5 would be read?
+bool has_zero_before(const Vector& x) {
+  for (Index i = 0; i + 1 < x.size(); ++i)
+    if (x[i] == 0 && x[i + 1] > 0 && x[i + 1] == std::trunc(x[i + 1])) return true;
+  return false;
+}
+
+}  // namespace
+
 bool expect_size(const Cursor& at, const Vector& x, Index size, const std::string& like) {
   if (x.size() == size) return true;
   at.error("has " + counted(x.size(), "number") + ", must have " + std::to_string(size) + " like " +
-           like);
+               like,
+           x.size() > size && has_zero_before(x) ? "a decimal comma? Write 0.5, not 0,5" : "");
   return false;
 }
 

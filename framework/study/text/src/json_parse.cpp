@@ -164,8 +164,11 @@ bool Builder::number() {
   const char* end = text_.data() + text_.size();
   const char* digits = begin + (*begin == '-' ? 1 : 0);
   if (*digits == '0' && end - digits > 1 && is_digit(digits[1])) {  // 0 and 7 to the library
+    const bool follows_digit = at_ >= 2 && text_[at_ - 1] == ',' && is_digit(text_[at_ - 2]);
     return refuse({static_cast<std::size_t>(digits - text_.data()),
-                   "a number begins with a superfluous 0", "write 7, not 07", Fault::Of::next});
+                   "a number begins with a superfluous 0",
+                   follows_digit ? "a decimal comma? Write 0.05, not 0,05" : "write 7, not 07",
+                   Fault::Of::next});
   }
   const auto [stop, code] = std::from_chars(begin, end, value.number);
   if (code != std::errc()) {

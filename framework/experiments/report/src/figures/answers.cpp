@@ -153,10 +153,13 @@ void add_contradictions(const RunFiles& files, const std::string& name, const Cu
   const auto outliers = object_of(summary, "outliers");
   if (!outliers) return;
   report.notes.push_back(
-      fmt::format("\"{}\" left outputs of {} samples out as outliers: they are assumed not to keep "
+      fmt::format("\"{}\" left outputs of {} out as outliers: they are assumed not to keep "
                   "to V, and all "
                   "others to keep to it.",
-                  name, shown(value_of(*outliers, "samples"), 15)));
+                  name,
+                  value_of(*outliers, "samples") == 1
+                      ? "1 sample"
+                      : shown(value_of(*outliers, "samples"), 15) + " samples"));
 }
 
 }  // namespace

@@ -111,7 +111,8 @@ void add_events(const RunFiles& files, Report& report) {
   if (table.rows.empty()) return;
   report.figures.push_back(
       {"events", section::diagnosis, "Events",
-       std::string("What the diagnosers said when, in the first seed. An exclusion is a proof.") +
+       std::string("What the diagnosers said when; of the first seed, where there are several. An "
+                   "exclusion is a proof.") +
            (more ? fmt::format(" The first {} of each; results.json has all.", most_events) : ""),
        std::move(table)});
 }
@@ -133,10 +134,13 @@ void add_timeline(const RunFiles& files, const DiagnosisTable& table,
   }
   report.figures.push_back({fmt::format("modes_{}", p + 1), section::diagnosis,
                             fmt::format("Modes: {}", files.pipelines()[p].name),
-                            "Which modes are possible, which one is monitored, and the true mode, "
-                            "in the first seed. A mode is excluded "
-                            "on a proof; it is not considered where the study begins in another "
-                            "one.",
+                            std::string("Which modes are possible") +
+                                (curves.truth.empty() ? " and which one is monitored"
+                                                      : ", which one is monitored, and the true "
+                                                        "mode") +
+                                "; of the first seed, where there are several. A mode is excluded "
+                                "on a proof; it is not considered where the study begins in "
+                                "another one.",
                             std::move(timeline), static_cast<int>(p)});
 }
 
