@@ -10,9 +10,12 @@ add_library(glpk INTERFACE)
 target_include_directories(glpk SYSTEM INTERFACE "${GLPK_INCLUDE_DIR}")
 target_link_libraries(glpk INTERFACE "${GLPK_LIBRARY}")
 find_library(GMP_LIBRARY gmp REQUIRED)
+find_library(MPFR_LIBRARY mpfr REQUIRED)
 find_library(GMPXX_LIBRARY gmpxx REQUIRED)
 add_library(gmp INTERFACE)
 target_link_libraries(gmp INTERFACE "${GMPXX_LIBRARY}" "${GMP_LIBRARY}")
+add_library(mpfr INTERFACE)
+target_link_libraries(mpfr INTERFACE "${MPFR_LIBRARY}" gmp)
 # cddlib over GMP rationals, a second opinion on exact answers. libcddgmp holds the double version
 # too: linking libcdd beside it crashes.
 find_path(CDD_INCLUDE_DIR cdd.h PATH_SUFFIXES cddlib REQUIRED)
