@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observers/nonlinear/recursion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "cordon/core/error.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+using formulas::BoxEnclosure;
+
+/// A contraction that shrinks no side by more than this share of it is the last one.
+constexpr double least_progress = 0.01;
+
+Box intersected(const Box& a, const Box& b) {
+  return {a.lower.cwiseMax(b.lower), a.upper.cwiseMin(b.upper)};
+}
+
+/// Several rows as value + slope (z - h) ± radius, moved to offset + slope z ± radius.
+struct AffineRows {
+  Matrix slope;
+  Vector offset, radius;
+};
+
+AffineRows affine_rows(const BoxEnclosure& enclosure, const std::vector<Index>& rows) {
+  const auto count = static_cast<Index>(rows.size());
+  AffineRows made{Matrix(count, enclosure.center().size()), Vector(count), Vector(count)};
+  Eigen::RowVectorXd slope(enclosure.center().size());
+  for (Index i = 0; i < count; ++i) {
+    const BoxEnclosure::Affine form = enclosure.affine(rows[as_size(i)], slope);
+    made.slope.row(i) = slope;
+    Interval offset{form.value, form.value};
+    for (Index j = 0; j < slope.size(); ++j)
+      offset = offset - directed::times(slope[j], enclosure.center()[j]);
+    made.offset[i] = 0.5 * offset.lower + 0.5 * offset.upper;
+    const double rest = std::max(directed::plus(offset.upper, -made.offset[i]).upper,
+                                 directed::plus(made.offset[i], -offset.lower).upper);
+    made.radius[i] = directed::plus(form.radius, rest).upper;
+  }
+  return made;
+}
+
+std::vector<Index> all(Index count) {
+  std::vector<Index> rows(as_size(count));
+  std::iota(rows.begin(), rows.end(), Index{0});
+  return rows;
+}
+
+}  // namespace
+
+NonlinearRecursion::NonlinearRecursion(std::shared_ptr<const NonlinearModel> model,
+                                       std::shared_ptr<const SetBackend> backend,
+                                       NonlinearOptions options)
+    : model_(std::move(model)),
+      backend_(std::move(backend)),
+      options_(options),
+      f_(model_->f, model_->states(), options_.form, backend_->info().rounding, model_->undefined),
+      g_(model_->g, model_->states(), options_.form, backend_->info().rounding, model_->undefined),
+      W_(backend_->import(model_->W)),
+      V_(backend_->import(model_->V)),
+      W_hull_(W_->interval_hull()),
+      V_hull_(V_->interval_hull()),
+      f_variables_(as_size(model_->f->variables())),
+      g_variables_(as_size(model_->g->variables())) {}
+
+void NonlinearRecursion::start(Enclosure X) {
+  X_ = std::move(X);
+  B_ = X_->interval_hull();
+}
+
+void NonlinearRecursion::set_variables(std::vector<Interval>& variables, const Box& noise,
+                                       VectorIn u, Index k) const {
+  std::size_t at = 0;
+  for (const Box* box : {&B_, &noise})
+    for (Index i = 0; i < box->dim(); ++i) variables[at++] = {box->lower[i], box->upper[i]};
+  for (const double known : u) variables[at++] = {known, known};
+  const auto time = static_cast<double>(k);
+  variables[at] = {time, time};
+}
+
+std::string NonlinearRecursion::row_name(Index row) const { return "x_" + std::to_string(row + 1); }
+
+void NonlinearRecursion::predict(VectorIn u, Index k) {
+  const Index n = model_->states();
+  set_variables(f_variables_, W_hull_, u, k);
+  f_.set_box(f_variables_);
+  Box range = Box::space(n);
+  for (Index row = 0; row < n; ++row) {
+    if (!f_.is_enclosed(row))
+      throw Error(Errc::unsupported, "no bounded set encloses " + row_name(row) + " at k = " +
+                                         std::to_string(k + 1) + ": " + f_.why_not_enclosed(row));
+    const Interval values = f_.range(row);
+    range.lower[row] = values.lower;
+    range.upper[row] = values.upper;
+  }
+  if (options_.boxes_only) {
+    B_ = range;
+    X_ = backend_->box(B_);
+    return;
+  }
+  const AffineRows form = affine_rows(f_, all(n));
+  const Enclosure rest = backend_->box({-form.radius, form.radius});
+  const Matrix disturbed = form.slope.rightCols(model_->disturbances()),
+               unit = Matrix::Identity(n, n);
+  const Term terms[] = {{disturbed, W_}, {unit, rest}};
+  X_ = backend_->predict(X_, {form.slope.leftCols(n), form.offset, terms});
+  const Box hull = X_->interval_hull();
+  B_ = options_.carries_box ? intersected(hull, range) : hull;
+}
+
+double NonlinearRecursion::target(Index row, const Sample& now) const {
+  return row < model_->outputs() ? now.y[row] : 0.0;
+}
+
+bool NonlinearRecursion::contract(const Sample& now) {
+  std::vector<Index> rows = present_outputs(now);
+  for (Index i = 0; i < model_->invariants; ++i) rows.push_back(model_->outputs() + i);
+  set_variables(g_variables_, V_hull_, now.u, now.k);
+  bool goes_on = true;
+  for (int sweep = 0; sweep < options_.most_sweeps && goes_on; ++sweep) {
+    const std::vector<Interval> before = g_variables_;
+    for (const Index row : rows) {
+      const double value = target(row, now);
+      if (!g_.evaluator().contract(g_variables_, row, {value, value})) return false;
+    }
+    goes_on = false;
+    for (Index i = 0; i < model_->states(); ++i) {
+      const Interval was = before[as_size(i)], is = g_variables_[as_size(i)];
+      goes_on = goes_on || is.upper - is.lower < (1 - least_progress) * (was.upper - was.lower);
+    }
+  }
+  for (Index i = 0; i < model_->states(); ++i) {
+    B_.lower[i] = g_variables_[as_size(i)].lower;
+    B_.upper[i] = g_variables_[as_size(i)].upper;
+  }
+  return true;
+}
+
+bool NonlinearRecursion::narrow_box(const Box& by) {
+  if (by.is_empty()) return false;
+  B_ = intersected(B_, by);
+  return !B_.is_empty();
+}
+
+/// X ∩ {x : x_i ∈ B_i} for the coordinates in which B is narrower.
+bool NonlinearRecursion::cut_by_box() {
+  const Box hull = X_->interval_hull();
+  std::vector<Index> narrower;
+  for (Index i = 0; i < B_.dim(); ++i)
+    if (B_.lower[i] > hull.lower[i] || B_.upper[i] < hull.upper[i]) narrower.push_back(i);
+  if (narrower.empty()) return true;
+  const auto count = static_cast<Index>(narrower.size());
+  Matrix rows = Matrix::Zero(count, B_.dim());
+  Box sides = Box::space(count);
+  for (Index i = 0; i < count; ++i) {
+    const Index coordinate = narrower[as_size(i)];
+    rows(i, coordinate) = 1;
+    sides.lower[i] = B_.lower[coordinate];
+    sides.upper[i] = B_.upper[coordinate];
+  }
+  X_ = backend_->intersection(X_, rows, backend_->box(sides));
+  return narrow_box(X_->interval_hull());
+}
+
+bool NonlinearRecursion::correct_rows(const Sample& now, const std::vector<Index>& rows) {
+  set_variables(g_variables_, V_hull_, now.u, now.k);
+  g_.set_box(g_variables_);
+  std::vector<Index> usable;
+  std::ranges::copy_if(rows, std::back_inserter(usable),
+                       [&](Index row) { return g_.is_enclosed(row); });
+  if (usable.empty()) return true;
+  const Index n = model_->states(), count = static_cast<Index>(usable.size());
+  AffineRows form = affine_rows(g_, usable);
+  Vector z(count);
+  for (Index i = 0; i < count; ++i) {
+    const Interval left = directed::plus(target(usable[as_size(i)], now), -form.offset[i]);
+    z[i] = left.lower;
+    const double error = directed::plus(left.upper, -left.lower).upper;
+    form.radius[i] = directed::plus(form.radius[i], error).upper;
+  }
+  Matrix noise(count, model_->noises() + count);
+  noise << form.slope.rightCols(model_->noises()), Matrix::Identity(count, count);
+  const Enclosure both = backend_->product(V_, backend_->box({-form.radius, form.radius}));
+  X_ = backend_->correct(X_, {form.slope.leftCols(n), z, {noise, both}});
+  return narrow_box(X_->interval_hull());
+}
+
+bool NonlinearRecursion::correct(const Sample& now) {
+  if (options_.contracts && !contract(now)) return false;
+  if (options_.boxes_only) {
+    X_ = backend_->box(B_);
+    return true;
+  }
+  if (options_.contracts && !options_.row_by_row && !cut_by_box()) return false;
+  std::vector<Index> rows = present_outputs(now);
+  for (Index i = 0; i < model_->invariants; ++i) rows.push_back(model_->outputs() + i);
+  if (!options_.row_by_row) return correct_rows(now, rows);
+  return std::ranges::all_of(rows, [&](Index row) { return correct_rows(now, {row}); });
+}
+
+void NonlinearRecursion::reduce() { X_ = backend_->reduce(X_, options_.budget); }
+
+}  // namespace cordon::estimators

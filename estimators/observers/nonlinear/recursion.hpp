@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Prediction and correction for models by formulas, on any backend:
+//   x_{k-1} ∈ X ∩ B, F = f(·, u_{k-1}, k-1):
+//     F(z) ∈ F(h) + J (z - h) ± r over z = (x, w) ∈ B × hull W, so that
+//     X⁺ = J_x X ⊕ J_w W ⊕ {F(h) - J h} ⊕ box(r),   B⁺ = hull X⁺ ∩ range of F over B × hull W
+//   y_k: B is contracted by g(x, v, u_k, k) = y_k and h(x) = 0 (HC4), X is cut by B where B is
+//     narrower, and then by y_k - g(h) + C h + D h_v - C x ∈ D V ⊕ box(r), with g enclosed as F.
+// X and B hold the state at all times: each is an enclosure, their intersection is the estimate.
+// Rounding: F(h), J, h, r and the shifts are enclosed; operations of the backend as it claims.
+// Sources: [Kuhn1998] mean value, [Combastel2005] first order, [Benhamou1999] contraction.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cordon/formulas/box_enclosure.hpp"
+#include "cordon/interfaces/backend.hpp"
+#include "cordon/interfaces/model.hpp"
+#include "cordon/interfaces/nonlinear_model.hpp"
+
+namespace cordon::estimators {
+
+struct NonlinearOptions {
+  formulas::AffineForm form = formulas::AffineForm::first_order;
+  /// The estimate is a box alone: ranges, and no affine forms.
+  bool boxes_only = false;
+  bool contracts = true;    ///< by HC4, beside the affine forms
+  bool carries_box = true;  ///< else B is the hull of X at each step
+  bool row_by_row = false;  ///< corrections renew the affine form after each row
+  int most_sweeps = 20;     ///< of contraction over all rows
+  Budget budget = {};
+};
+
+class NonlinearRecursion {
+ public:
+  NonlinearRecursion(std::shared_ptr<const NonlinearModel> model,
+                     std::shared_ptr<const SetBackend> backend, NonlinearOptions options);
+
+  /// The set and the box that the state is in; no box: the hull.
+  void start(Enclosure X);
+  /// To the next time. Throws Errc::unsupported where f has no bounded enclosure, with the row and
+  /// the reason.
+  void predict(VectorIn u, Index k);
+  /// With the outputs of time k that are there. False: no state is left, which is proven.
+  bool correct(const Sample& now);
+  void reduce();
+
+  const Enclosure& set() const { return X_; }
+  const Box& box() const { return B_; }
+
+ private:
+  /// The box of x, of w or v, u and k, as variables of f or g.
+  void set_variables(std::vector<Interval>& variables, const Box& noise, VectorIn u, Index k) const;
+  bool contract(const Sample& now);
+  bool cut_by_box();
+  bool correct_rows(const Sample& now, const std::vector<Index>& rows);
+  bool narrow_box(const Box& by);
+  double target(Index row, const Sample& now) const;
+  std::string row_name(Index row) const;
+
+  std::shared_ptr<const NonlinearModel> model_;
+  std::shared_ptr<const SetBackend> backend_;
+  NonlinearOptions options_;
+  formulas::BoxEnclosure f_, g_;
+  Enclosure W_, V_, X_;
+  Box W_hull_, V_hull_, B_;
+  std::vector<Interval> f_variables_, g_variables_;
+};
+
+}  // namespace cordon::estimators

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "cordon/core/line_form.hpp"
+#include "cordon/formulas/evaluator.hpp"
+
+namespace cordon {
+
+/// Discrete-time model by formulas
+///   x_k = f(x_{k-1}, w_{k-1}, u_{k-1}, k-1),   y_k = g(x_k, v_k, u_k, k),   h(x_k) = 0
+/// with x_0 ∈ X0, w_k ∈ W, v_k ∈ V. Immutable; the functions are shared.
+struct NonlinearModel {
+  /// f over the variables x, w, u, k, in this order; derivatives by x and w, of order 2.
+  std::shared_ptr<const formulas::Function> f;
+  /// The rows of g, then those of h, over x, v, u, k; derivatives by x and v, of order 2.
+  std::shared_ptr<const formulas::Function> g;
+  Index invariants = 0;  ///< rows of h
+  Index inputs = 0;
+  LineForm X0, W, V;
+  /// Whether states are assumed to lie where all formulas are defined.
+  formulas::Undefined undefined = formulas::Undefined::refused;
+
+  Index states() const { return f->rows(); }
+  Index disturbances() const { return f->differentiated() - states(); }
+  Index noises() const { return g->differentiated() - states(); }
+  Index outputs() const { return g->rows() - invariants; }
+};
+
+}  // namespace cordon
