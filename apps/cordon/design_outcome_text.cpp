@@ -15,6 +15,8 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
+constexpr double touching_kappa = 1e-7;  // of tubes that touch up to rounding
+
 std::string six_digits(double value) {
   if (std::isnan(value)) return "-";
   if (std::isinf(value)) return value > 0 ? "∞" : "-∞";
@@ -189,10 +191,23 @@ std::string horizon_text(const DesignOutcome& outcome) {
   return text;
 }
 
+namespace {
+
+/// Has exact arithmetic decided what the designer's reason leaves open? That tubes touch is a
+/// reason of its own.
+bool is_decided_since(const DesignOutcome& outcome, const ExactSeparation* exact) {
+  if (!outcome.best || outcome.best->separates() != Answer::unknown || !exact) return false;
+  const auto& pairs = outcome.best->pairs;
+  const bool touching = std::any_of(pairs.begin(), pairs.end(), [](const PairSeparation& pair) {
+    return std::abs(pair.kappa) < touching_kappa;
+  });
+  return exact->separates() == Answer::yes || (exact->separates() == Answer::no && !touching);
+}
+
+}  // namespace
+
 std::string reason_text(const DesignOutcome& outcome, const ExactSeparation* exact) {
-  // What the designer leaves open may be decided in exact arithmetic.
-  const bool is_decided = outcome.best && outcome.best->separates() == Answer::unknown && exact &&
-                          exact->separates() != Answer::unknown;
+  const bool is_decided = is_decided_since(outcome, exact);
   std::string text =
       outcome.reason.empty() || is_decided ? "" : fmt::format("{}\n", outcome.reason);
   if (!outcome.suggestion.empty()) text += fmt::format("To try: {}\n", outcome.suggestion);

@@ -156,7 +156,9 @@ bool is_answer(const ModeBank& bank, const Params& params, double epsilon, Desig
                                  [](const auto& pair) { return pair.kappa > -touching; });
   std::string open = outside ? "it leaves the input set" : open_question(bank, found, epsilon);
   if (!outside && (found.separates() == Answer::yes || limit)) {
-    if (!open.empty()) outcome.reason = std::move(open);
+    if (open.empty()) return true;
+    outcome.reason = std::move(open);
+    outcome.suggestion = "an \"epsilon\" above 0, for an input that separates";
     return true;
   }
   outcome.status = DesignStatus::unknown;

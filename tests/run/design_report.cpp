@@ -120,6 +120,12 @@ TEST_CASE("a design on paper") {
   CHECK_FALSE(has(text(d), "not decided"));
   d.exact = exact(Answer::yes);
   CHECK_FALSE(has(text(d), "not decided"));
+  // That they touch stays a reason why they do not separate.
+  d.exact = exact(Answer::no);
+  d.outcome->best->pairs[0].kappa = -1e-10;
+  d.outcome->reason = "they touch";
+  CHECK(has(text(d), "they touch"));
+  d.outcome->reason = "whether they can be the same is not decided";
   d.exact.reset();
   CHECK(has(text(d), "whether they can be the same is not decided"));
   d.outcome->best->empty[1] = Answer::yes;

@@ -42,8 +42,8 @@ void register_milp_designer(Registrar& registrar) {
        "program. Its optimum costs more than that of the problem itself, and how much is not "
        "known: no lower bound is\n"
        "given, and that of the program, as GLPK has it, stands in `restriction`. The input that "
-       "is found is proven to separate "
-       "the pairs themselves."},
+       "is found is proven to separate\n"
+       "the pairs themselves (with an epsilon of 0 their tubes may touch)."},
       designers::check_search,
       [](const DesignerContext& context, const Params& params) {
         return std::make_unique<Milp>(context, params);
