@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observers/nonlinear/recursion.hpp"
 
+#include <cstdlib>
+#include <random>
+
 #include <doctest/doctest.h>
 
 #include "input_design/plugins.hpp"
@@ -97,4 +100,105 @@ TEST_CASE("hulls of five examples: no wider than the reference, never within wha
       }
     }
   }
+}
+
+namespace {
+
+/// A trajectory of the formulas: disturbances and noises are drawn, half of them at vertices.
+class Trajectory {
+ public:
+  Trajectory(std::shared_ptr<const NonlinearModel> model, std::uint64_t seed)
+      : model_(std::move(model)),
+        f_(model_->f, Rounding::nominal),
+        g_(model_->g, Rounding::nominal),
+        random_(seed),
+        x_(point_of(model_->X0)) {}
+
+  const Vector& x() const { return x_; }
+  Vector output(VectorIn u, Index k) {
+    return values(g_, point_of(model_->V), u, k).head(model_->outputs());
+  }
+  void advance(VectorIn u, Index k) { x_ = values(f_, point_of(model_->W), u, k); }
+
+ private:
+  Vector point_of(const LineForm& set) {
+    Vector factors(set.G.cols());
+    const bool at_vertex = std::bernoulli_distribution(0.5)(random_);
+    for (double& factor : factors) {
+      factor = std::uniform_real_distribution<double>(-1, 1)(random_);
+      if (at_vertex) factor = factor < 0 ? -1 : 1;
+    }
+    return set.c + set.G * factors;
+  }
+  Vector values(formulas::Evaluator& evaluator, const Vector& noise, VectorIn u, Index k) {
+    std::vector<Interval> point;
+    for (const double known : x_) point.push_back({known, known});
+    for (const double known : noise) point.push_back({known, known});
+    for (const double known : u) point.push_back({known, known});
+    point.push_back({static_cast<double>(k), static_cast<double>(k)});
+    evaluator.evaluate(point);
+    Vector made(evaluator.function().rows());
+    for (Index row = 0; row < made.size(); ++row) {
+      const Interval value = evaluator.value(row);
+      made[row] = 0.5 * value.lower + 0.5 * value.upper;
+    }
+    return made;
+  }
+
+  std::shared_ptr<const NonlinearModel> model_;
+  formulas::Evaluator f_, g_;
+  std::mt19937_64 random_;
+  Vector x_;
+};
+
+/// Steps of one trajectory that were enclosed.
+int follow(const std::shared_ptr<const NonlinearModel>& model, const Json& inputs,
+           const Method& method, std::uint64_t seed, Index steps) {
+  const auto backend = examples::backend(method.backend);
+  NonlinearOptions options = method.options;
+  options.budget = {12, 4};
+  NonlinearRecursion recursion(model, backend, options);
+  Trajectory trajectory(model, seed);
+  recursion.start(backend->import(model->X0));
+  for (Index k = 0; k < steps; ++k) {
+    const Vector u = vector_of(inputs[as_size(k) % inputs.size()]);
+    REQUIRE(recursion.correct({k, u, trajectory.output(u, k)}));
+    recursion.reduce();
+    const Vector room = Vector::Constant(trajectory.x().size(), 1e-12 * trajectory.x().norm());
+    REQUIRE((recursion.box().lower - room).cwiseMax(trajectory.x()) == trajectory.x());
+    REQUIRE((recursion.box().upper + room).cwiseMin(trajectory.x()) == trajectory.x());
+    REQUIRE(recursion.set()->contains(trajectory.x()) != Answer::no);
+    try {
+      recursion.predict(u, k);
+    } catch (const Error& error) {
+      CHECK(error.code() == Errc::unsupported);
+      return static_cast<int>(k) + 1;
+    }
+    trajectory.advance(u, k);
+    // Where it runs away, the last digit of y is more than all of V.
+    if (!(trajectory.x().norm() < 1e6)) return static_cast<int>(k) + 1;
+  }
+  return static_cast<int>(steps);
+}
+
+}  // namespace
+
+TEST_CASE("trajectories stay inside, whatever the method and its budget") {
+  const char* wanted = std::getenv("CORDON_TRAJECTORIES");
+  const int seeds = wanted ? std::atoi(wanted) : 20;
+  const Json all = reference();
+  int enclosed = 0;
+  for (const Json& example : all["examples"]) {
+    if (example["name"] == "heading") continue;  // disturbances leave its invariant
+    const auto model = model_of(example["system"]);
+    for (const Method& method : methods()) {
+      CAPTURE(example["name"].get<std::string>());
+      CAPTURE(std::string(method.reference));
+      for (int seed = 1; seed <= seeds; ++seed) {
+        CAPTURE(seed);
+        enclosed += follow(model, example["u"], method, static_cast<std::uint64_t>(seed), 30);
+      }
+    }
+  }
+  CHECK(enclosed > 15 * seeds * 4 * static_cast<int>(methods().size()));
 }

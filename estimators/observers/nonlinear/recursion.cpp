@@ -68,8 +68,13 @@ NonlinearRecursion::NonlinearRecursion(std::shared_ptr<const NonlinearModel> mod
       g_variables_(as_size(model_->g->variables())) {}
 
 void NonlinearRecursion::start(Enclosure X) {
+  set(std::move(X));
+  B_ = hull_;
+}
+
+void NonlinearRecursion::set(Enclosure X) {
   X_ = std::move(X);
-  B_ = X_->interval_hull();
+  hull_ = X_->interval_hull();
 }
 
 void NonlinearRecursion::set_variables(std::vector<Interval>& variables, const Box& noise,
@@ -99,7 +104,7 @@ void NonlinearRecursion::predict(VectorIn u, Index k) {
   }
   if (options_.boxes_only) {
     B_ = range;
-    X_ = backend_->box(B_);
+    set_box();
     return;
   }
   const AffineRows form = affine_rows(f_, all(n));
@@ -107,9 +112,8 @@ void NonlinearRecursion::predict(VectorIn u, Index k) {
   const Matrix disturbed = form.slope.rightCols(model_->disturbances()),
                unit = Matrix::Identity(n, n);
   const Term terms[] = {{disturbed, W_}, {unit, rest}};
-  X_ = backend_->predict(X_, {form.slope.leftCols(n), form.offset, terms});
-  const Box hull = X_->interval_hull();
-  B_ = options_.carries_box ? intersected(hull, range) : hull;
+  set(backend_->predict(X_, {form.slope.leftCols(n), form.offset, terms}));
+  B_ = options_.carries_box ? intersected(hull_, range) : hull_;
 }
 
 double NonlinearRecursion::target(Index row, const Sample& now) const {
@@ -140,18 +144,22 @@ bool NonlinearRecursion::contract(const Sample& now) {
   return true;
 }
 
-bool NonlinearRecursion::narrow_box(const Box& by) {
-  if (by.is_empty()) return false;
-  B_ = intersected(B_, by);
+bool NonlinearRecursion::narrow_box() {
+  if (hull_.is_empty()) return false;
+  B_ = intersected(B_, hull_);
   return !B_.is_empty();
+}
+
+void NonlinearRecursion::set_box() {
+  X_ = backend_->box(B_);
+  hull_ = B_;
 }
 
 /// X ∩ {x : x_i ∈ B_i} for the coordinates in which B is narrower.
 bool NonlinearRecursion::cut_by_box() {
-  const Box hull = X_->interval_hull();
   std::vector<Index> narrower;
   for (Index i = 0; i < B_.dim(); ++i)
-    if (B_.lower[i] > hull.lower[i] || B_.upper[i] < hull.upper[i]) narrower.push_back(i);
+    if (B_.lower[i] > hull_.lower[i] || B_.upper[i] < hull_.upper[i]) narrower.push_back(i);
   if (narrower.empty()) return true;
   const auto count = static_cast<Index>(narrower.size());
   Matrix rows = Matrix::Zero(count, B_.dim());
@@ -162,8 +170,8 @@ bool NonlinearRecursion::cut_by_box() {
     sides.lower[i] = B_.lower[coordinate];
     sides.upper[i] = B_.upper[coordinate];
   }
-  X_ = backend_->intersection(X_, rows, backend_->box(sides));
-  return narrow_box(X_->interval_hull());
+  set(backend_->intersection(X_, rows, backend_->box(sides)));
+  return narrow_box();
 }
 
 bool NonlinearRecursion::correct_rows(const Sample& now, const std::vector<Index>& rows) {
@@ -185,14 +193,14 @@ bool NonlinearRecursion::correct_rows(const Sample& now, const std::vector<Index
   Matrix noise(count, model_->noises() + count);
   noise << form.slope.rightCols(model_->noises()), Matrix::Identity(count, count);
   const Enclosure both = backend_->product(V_, backend_->box({-form.radius, form.radius}));
-  X_ = backend_->correct(X_, {form.slope.leftCols(n), z, {noise, both}});
-  return narrow_box(X_->interval_hull());
+  set(backend_->correct(X_, {form.slope.leftCols(n), z, {noise, both}}));
+  return narrow_box();
 }
 
 bool NonlinearRecursion::correct(const Sample& now) {
   if (options_.contracts && !contract(now)) return false;
   if (options_.boxes_only) {
-    X_ = backend_->box(B_);
+    set_box();
     return true;
   }
   if (options_.contracts && !options_.row_by_row && !cut_by_box()) return false;

@@ -6,7 +6,8 @@
 //   y_k: B is contracted by g(x, v, u_k, k) = y_k and h(x) = 0 (HC4), X is cut by B where B is
 //     narrower, and then by y_k - g(h) + C h + D h_v - C x ∈ D V ⊕ box(r), with g enclosed as F.
 // X and B hold the state at all times: each is an enclosure, their intersection is the estimate.
-// Rounding: F(h), J, h, r and the shifts are enclosed; operations of the backend as it claims.
+// Rounding: F(h), J, h, r and the shifts are enclosed; operations of the backend as it claims. y is
+// taken as exact: samples whose last digit is more than V need room in V.
 // Sources: [Kuhn1998] mean value, [Combastel2005] first order, [Benhamou1999] contraction.
 #pragma once
 
@@ -54,7 +55,9 @@ class NonlinearRecursion {
   bool contract(const Sample& now);
   bool cut_by_box();
   bool correct_rows(const Sample& now, const std::vector<Index>& rows);
-  bool narrow_box(const Box& by);
+  void set(Enclosure X);
+  void set_box();     ///< X = B
+  bool narrow_box();  ///< B ∩ hull X; false: empty
   double target(Index row, const Sample& now) const;
   std::string row_name(Index row) const;
 
@@ -64,6 +67,7 @@ class NonlinearRecursion {
   formulas::BoxEnclosure f_, g_;
   Enclosure W_, V_, X_;
   Box W_hull_, V_hull_, B_;
+  Box hull_;  ///< of X
   std::vector<Interval> f_variables_, g_variables_;
 };
 
