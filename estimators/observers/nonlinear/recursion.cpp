@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/tolerances.hpp"
 
 namespace cordon::estimators {
 
@@ -99,15 +100,18 @@ void NonlinearRecursion::predict(VectorIn u, Index k) {
       throw Error(Errc::unsupported, "no bounded set encloses " + row_name(row) + " at k = " +
                                          std::to_string(k + 1) + ": " + f_.why_not_enclosed(row));
     const Interval values = f_.range(row);
-    range.lower[row] = values.lower;
-    range.upper[row] = values.upper;
+    const double near = room(f_.rounding_error(row));
+    range.lower[row] = directed::plus(values.lower, -near).lower;
+    range.upper[row] = directed::plus(values.upper, near).upper;
   }
   if (options_.boxes_only) {
     B_ = range;
     set_box();
     return;
   }
-  const AffineRows form = affine_rows(f_, all(n));
+  AffineRows form = affine_rows(f_, all(n));
+  for (Index row = 0; row < n; ++row)
+    form.radius[row] = directed::plus(form.radius[row], room(f_.rounding_error(row))).upper;
   const Enclosure rest = backend_->box({-form.radius, form.radius});
   const Matrix disturbed = form.slope.rightCols(model_->disturbances()),
                unit = Matrix::Identity(n, n);
@@ -120,17 +124,37 @@ double NonlinearRecursion::target(Index row, const Sample& now) const {
   return row < model_->outputs() ? now.y[row] : 0.0;
 }
 
+double NonlinearRecursion::room(double error, double value) const {
+  if (backend_->info().rounding != Rounding::nominal) return 0;
+  return error + tolerances::product_noise * std::abs(value);
+}
+
+bool NonlinearRecursion::contract_row(Index row, double value, double room) {
+  constexpr double doubt = tolerances::proof_margin / tolerances::product_noise;
+  before_row_ = g_variables_;
+  if (g_.evaluator().contract(g_variables_, row, {value - room, value + room})) return true;
+  g_variables_ = before_row_;
+  if (room == 0) return false;
+  const double far = doubt * room;
+  if (!g_.evaluator().contract(g_variables_, row, {value - far, value + far})) return false;
+  g_variables_ = before_row_;  // left as it is
+  return true;
+}
+
 bool NonlinearRecursion::contract(const Sample& now) {
   std::vector<Index> rows = present_outputs(now);
   for (Index i = 0; i < model_->invariants; ++i) rows.push_back(model_->outputs() + i);
   set_variables(g_variables_, V_hull_, now.u, now.k);
+  g_.evaluator().evaluate(g_variables_);
+  g_.evaluator().bound_rounding();
+  std::vector<double> rooms;
+  for (const Index row : rows)
+    rooms.push_back(room(g_.evaluator().rounding_error(row), target(row, now)));
   bool goes_on = true;
   for (int sweep = 0; sweep < options_.most_sweeps && goes_on; ++sweep) {
     const std::vector<Interval> before = g_variables_;
-    for (const Index row : rows) {
-      const double value = target(row, now);
-      if (!g_.evaluator().contract(g_variables_, row, {value, value})) return false;
-    }
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (!contract_row(rows[i], target(rows[i], now), rooms[i])) return false;
     goes_on = false;
     for (Index i = 0; i < model_->states(); ++i) {
       const Interval was = before[as_size(i)], is = g_variables_[as_size(i)];
@@ -187,7 +211,9 @@ bool NonlinearRecursion::correct_rows(const Sample& now, const std::vector<Index
   for (Index i = 0; i < count; ++i) {
     const Interval left = directed::plus(target(usable[as_size(i)], now), -form.offset[i]);
     z[i] = left.lower;
-    const double error = directed::plus(left.upper, -left.lower).upper;
+    const double error =
+        directed::plus(left.upper, -left.lower).upper +
+        room(g_.rounding_error(usable[as_size(i)]), target(usable[as_size(i)], now));
     form.radius[i] = directed::plus(form.radius[i], error).upper;
   }
   Matrix noise(count, model_->noises() + count);

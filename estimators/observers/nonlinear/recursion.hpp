@@ -6,9 +6,11 @@
 //   y_k: B is contracted by g(x, v, u_k, k) = y_k and h(x) = 0 (HC4), X is cut by B where B is
 //     narrower, and then by y_k - g(h) + C h + D h_v - C x ∈ D V ⊕ box(r), with g enclosed as F.
 // X and B hold the state at all times: each is an enclosure, their intersection is the estimate.
-// Rounding: F(h), J, h, r and the shifts are enclosed; operations of the backend as it claims. y is
-// taken as exact: samples whose last digit is more than V need room in V.
-// Sources: [Kuhn1998] mean value, [Combastel2005] first order, [Benhamou1999] contraction.
+// Rounding: F(h), J, h, r and the shifts are enclosed; operations of the backend as it claims. With
+// nominal sets, samples and states of the plant may be rounded: values of f and g have room for
+// what formulas in plain doubles are off by, and contraction proves that no state is left only
+// where it would with 10⁴ times that room. With outward ones they are taken as exact. Sources:
+// [Kuhn1998] mean value, [Combastel2005] first order, [Benhamou1999] contraction.
 #pragma once
 
 #include <string>
@@ -53,12 +55,15 @@ class NonlinearRecursion {
   /// The box of x, of w or v, u and k, as variables of f or g.
   void set_variables(std::vector<Interval>& variables, const Box& noise, VectorIn u, Index k) const;
   bool contract(const Sample& now);
+  bool contract_row(Index row, double value, double room);
   bool cut_by_box();
   bool correct_rows(const Sample& now, const std::vector<Index>& rows);
   void set(Enclosure X);
   void set_box();     ///< X = B
   bool narrow_box();  ///< B ∩ hull X; false: empty
   double target(Index row, const Sample& now) const;
+  /// For a rounding error, and that of a value beside it.
+  double room(double error, double value = 0) const;
   std::string row_name(Index row) const;
 
   std::shared_ptr<const NonlinearModel> model_;
@@ -68,7 +73,7 @@ class NonlinearRecursion {
   Enclosure W_, V_, X_;
   Box W_hull_, V_hull_, B_;
   Box hull_;  ///< of X
-  std::vector<Interval> f_variables_, g_variables_;
+  std::vector<Interval> f_variables_, g_variables_, before_row_;
 };
 
 }  // namespace cordon::estimators

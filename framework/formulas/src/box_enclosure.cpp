@@ -41,6 +41,7 @@ BoxEnclosure::BoxEnclosure(std::shared_ptr<const Function> function, Index state
       point_(as_size(this->function().variables()), Interval{0, 0}),
       natural_(as_size(this->function().rows()), real_line),
       at_center_(natural_),
+      errors_(natural_.size(), 0.0),
       reasons_(natural_.size()),
       remainders_(natural_.size(), Interval{0, 0}) {
   if (this->function().order() < (form == AffineForm::first_order ? 2 : 1) || states < 0 ||
@@ -62,9 +63,11 @@ void BoxEnclosure::set_box(std::span<const Interval> variables) {
     radius_[i] = reach(side, center_[i]);
   }
   evaluator_.evaluate(variables);
+  evaluator_.bound_rounding();
   for (Index row = 0; row < function().rows(); ++row) {
     const bool is_enclosed = evaluator_.is_enclosed(row);
     natural_[as_size(row)] = is_enclosed ? evaluator_.value(row) : real_line;
+    errors_[as_size(row)] = evaluator_.rounding_error(row);
     if (is_enclosed) continue;
     const Violation* violation = evaluator_.violation_of(row);
     reasons_[as_size(row)] = violation ? violation->to_string(function()) : "its bounds overflow";

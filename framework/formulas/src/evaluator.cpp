@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/rounding.hpp"
 #include "operations.hpp"
 
 namespace cordon::formulas {
@@ -51,7 +52,8 @@ Evaluator::Evaluator(std::shared_ptr<const Function> function, Rounding rounding
       undefined_(undefined),
       values_(function_->tape().size(), Interval{0, 0}),
       gradients_(function_->gradients().size(), Interval{1, 1}),
-      hessians_(function_->hessians().size(), Interval{0, 0}) {
+      hessians_(function_->hessians().size(), Interval{0, 0}),
+      errors_(values_.size(), 0.0) {
   for (std::size_t i = 0; i < values_.size(); ++i)
     if (function_->tape()[i].node.operation == Operation::constant)
       values_[i] = function_->tape()[i].node.value;
@@ -112,6 +114,45 @@ const Violation* Evaluator::violation_of(Index row) const {
 
 bool Evaluator::is_enclosed(Index row) const {
   return value(row).is_finite() && (violations_.empty() || !violation_of(row));
+}
+
+void Evaluator::bound_rounding() {
+  constexpr double unit = 16 * rounding::unit, of_library = elementary::library_error * unit;
+  const auto finite = [](double x) { return std::isfinite(x) ? x : 0.0; };
+  for (std::size_t place = 0; place < values_.size(); ++place) {
+    const Node& node = function_->tape()[place].node;
+    const auto a = static_cast<std::size_t>(node.a), b = static_cast<std::size_t>(node.b);
+    const double own = finite(values_[place].magnitude());
+    double& error = errors_[place];
+    switch (node.operation) {
+      case Operation::constant:
+      case Operation::variable:
+        error = 0;
+        break;
+      case Operation::negate:
+        error = errors_[a];
+        break;
+      case Operation::add:
+      case Operation::subtract:
+        error = errors_[a] + errors_[b] + unit * own;
+        break;
+      case Operation::multiply:
+        error = finite(values_[b].magnitude() * errors_[a]) +
+                finite(values_[a].magnitude() * errors_[b]) + unit * own;
+        break;
+      case Operation::minimum:
+      case Operation::maximum:
+        error = std::max(errors_[a], errors_[b]);
+        break;
+      default:
+        error = of_library * own;
+        if (errors_[a] > 0)
+          error += finite(
+              first_derivative(node, within_domain(node, values_[a]), values_[place], rounding_)
+                  .magnitude() *
+              errors_[a]);
+    }
+  }
 }
 
 void Evaluator::differentiate() {

@@ -44,6 +44,8 @@ class BoxEnclosure {
 
   /// Of the natural extension over the box; the real line where the row has none.
   Interval natural(Index row) const { return natural_[as_size(row)]; }
+  /// As the evaluator's, over the box.
+  double rounding_error(Index row) const { return errors_[as_size(row)]; }
   /// Why the row has no natural extension, "" if it has a bounded one.
   std::string why_not_enclosed(Index row) const;
   bool is_enclosed(Index row) const { return natural_[as_size(row)].is_finite(); }
@@ -83,6 +85,7 @@ class BoxEnclosure {
   Vector center_, radius_;
   std::vector<Interval> point_;  ///< all variables, z at its centre
   std::vector<Interval> natural_, at_center_;
+  std::vector<double> errors_;
   std::vector<std::string> reasons_;
   std::vector<std::size_t> entries_;  ///< where the partial derivatives of a row begin
   std::vector<Interval> gradient_, gradient_at_center_, remainders_;
