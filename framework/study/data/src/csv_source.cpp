@@ -207,7 +207,7 @@ namespace {
 /// What to do about a field that holds no number.
 std::string suggestion_for(bool is_output, bool is_missing) {
   if (!is_output)
-    return is_missing ? "only outputs may be missing: give the value that was applied" : "";
+    return is_missing ? "only outputs may be missing, every row needs this number" : "";
   return is_missing ? "with \"missing\": \"skip\" in /data/csv, observers use the other outputs of "
                       "such samples"
                     : "where there is no value, leave the field empty, with \"missing\": \"skip\" "
