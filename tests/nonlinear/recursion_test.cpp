@@ -199,3 +199,52 @@ TEST_CASE("trajectories stay inside, whatever the method and its budget") {
   }
   CHECK(enclosed > 15 * seeds * 4 * static_cast<int>(methods().size()));
 }
+
+TEST_CASE("noise-free plants, also badly scaled ones, are never proven to have no state") {
+  for (const double scale : {1.0, 1e-6, 1e7}) {
+    Json system = {{"states", {"a", "b"}},
+                   {"disturbances", {"w"}},
+                   {"noises", {"v"}},
+                   {"parameters", {{"s", scale}}},
+                   {"f", {"0.8*a - 0.6*b/s + 0.01*sin(a)/7 + w", "s*(0.6*a + 0.3) + 0.8*b"}},
+                   {"g", {"a + b/s + v", "b - a*s/3", "a"}}};
+    const Json point = {{"center", {0}}, {"generators", {{0}}}};
+    system["W"] = system["V"] = point;
+    system["X0"] = {{"center", {0.3, 0.1 * scale}}, {"generators", {{0.5, 0}, {0, 0.5 * scale}}}};
+    const auto model = model_of(system);
+    for (const Method& method : methods()) {
+      CAPTURE(scale);
+      CAPTURE(std::string(method.reference));
+      for (std::uint64_t seed = 1; seed <= 5; ++seed)
+        CHECK(follow(model, Json::parse("[[]]"), method, seed, 200) == 200);
+    }
+  }
+}
+
+TEST_CASE("twelve states that turn without noise, through zero again and again") {
+  Json system = {{"noises", {"v"}}, {"disturbances", {"w"}}};
+  Json center = Json::array(), generators = Json::array();
+  for (int pair = 0; pair < 6; ++pair) {
+    const std::string a = "a" + std::to_string(pair), b = "b" + std::to_string(pair);
+    system["states"].push_back(a);
+    system["states"].push_back(b);
+    system["f"].push_back("0.8*" + a + " - 0.6*" + b + " + 0.001*sin(" + a + ")*" + b);
+    system["f"].push_back("0.6*" + a + " + 0.8*" + b);
+    system["g"].push_back(a + " + 0.5*" + b);
+    for (int i = 0; i < 2; ++i) {
+      Json row = Json::array();
+      for (int j = 0; j < 12; ++j) row.push_back(j == 2 * pair + i ? 0.25 : 0.0);
+      center.push_back(1.0 + pair);
+      generators.push_back(row);
+    }
+  }
+  system["W"] = system["V"] = {{"center", {0}}, {"generators", {{0}}}};
+  system["X0"] = {{"center", center}, {"generators", generators}};
+  const auto model = model_of(system);
+  for (const Method& method : methods()) {
+    CAPTURE(std::string(method.reference));
+    const bool is_cheap = std::string(method.backend) != "constrained_zonotope";
+    const Index steps = is_cheap ? 500 : 20;
+    CHECK(follow(model, Json::parse("[[]]"), method, 1, steps) > 0);
+  }
+}

@@ -16,6 +16,8 @@ using formulas::BoxEnclosure;
 
 /// A contraction that shrinks no side by more than this share of it is the last one.
 constexpr double least_progress = 0.01;
+/// Nominal proofs exceed rounding errors this many times.
+constexpr double rounding_doubt = tolerances::proof_margin / tolerances::product_noise;
 
 Box intersected(const Box& a, const Box& b) {
   return {a.lower.cwiseMax(b.lower), a.upper.cwiseMin(b.upper)};
@@ -76,6 +78,16 @@ void NonlinearRecursion::start(Enclosure X) {
 void NonlinearRecursion::set(Enclosure X) {
   X_ = std::move(X);
   hull_ = X_->interval_hull();
+  if (backend_->info().rounding != Rounding::nominal || hull_.is_empty()) return;
+  // The hull of a nominal set holds up to rounding errors of the terms it is made of, the box at
+  // all times.
+  for (Index i = 0; i < hull_.dim(); ++i) {
+    const double size = std::max(std::abs(hull_.lower[i]), std::abs(hull_.upper[i]));
+    const double room =
+        std::max(tolerances::proof_margin * size, rounding_doubt * f_.rounding_error(i));
+    hull_.lower[i] -= room;
+    hull_.upper[i] += room;
+  }
 }
 
 void NonlinearRecursion::set_variables(std::vector<Interval>& variables, const Box& noise,
@@ -130,12 +142,11 @@ double NonlinearRecursion::room(double error, double value) const {
 }
 
 bool NonlinearRecursion::contract_row(Index row, double value, double room) {
-  constexpr double doubt = tolerances::proof_margin / tolerances::product_noise;
   before_row_ = g_variables_;
   if (g_.evaluator().contract(g_variables_, row, {value - room, value + room})) return true;
   g_variables_ = before_row_;
   if (room == 0) return false;
-  const double far = doubt * room;
+  const double far = rounding_doubt * room;
   if (!g_.evaluator().contract(g_variables_, row, {value - far, value + far})) return false;
   g_variables_ = before_row_;  // left as it is
   return true;
