@@ -144,6 +144,7 @@ TEST_CASE("fields that hold no number come with what to do") {
   const auto suggestion = [](const std::string& text) { return problems(text).front().suggestion; };
   CHECK(suggestion("u,y\n1,err\n").find("leave the field empty") != std::string::npos);
   CHECK(suggestion("u,y\n1,\n").find("\"missing\": \"skip\"") != std::string::npos);
+  CHECK(suggestion("u,y\nNA,1\n").find("only outputs may be missing") != std::string::npos);
   CHECK(suggestion("u,y\n,1\n").find("only outputs may be missing") != std::string::npos);
   CHECK(suggestion("u,y\n1\n").find("each row has a field") != std::string::npos);
   CHECK(suggestion("u,y\n").find("a row for every step") != std::string::npos);

@@ -205,13 +205,13 @@ void CsvSource::check_row(const CsvRow& row) {
 namespace {
 
 /// What to do about a field that holds no number.
-std::string suggestion_for(bool is_output, bool is_missing) {
-  if (!is_output)
-    return is_missing ? "only outputs may be missing, every row needs this number" : "";
-  return is_missing ? "with \"missing\": \"skip\" in /data/csv, observers use the other outputs of "
-                      "such samples"
-                    : "where there is no value, leave the field empty, with \"missing\": \"skip\" "
-                      "in /data/csv";
+std::string suggestion_for(const std::string& field, bool is_output) {
+  const bool is_word = field.find_first_of("0123456789") == std::string::npos;
+  if (!is_output) return is_word ? "only outputs may be missing, every row needs this number" : "";
+  return is_missing(field) ? "with \"missing\": \"skip\" in /data/csv, observers use the other "
+                             "outputs of such samples"
+                           : "where there is no value, leave the field empty, with \"missing\": "
+                             "\"skip\" in /data/csv";
 }
 
 }  // namespace
@@ -234,7 +234,7 @@ std::optional<Vector> CsvSource::numbers(const CsvRow& row, const Columns& colum
     good = false;
     report("/data/csv/file", row.line,
            "column " + json::in_quotes(columns.names[i]) + ": " + number.problem,
-           suggestion_for(is_output, is_missing(field)));
+           suggestion_for(field, is_output));
   }
   return good ? std::optional<Vector>(std::move(values)) : std::nullopt;
 }

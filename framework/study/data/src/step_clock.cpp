@@ -56,7 +56,7 @@ StepClock::Answer StepClock::step_at(double t) {
     next_ = *k + 1;
     return {*k};
   }
-  if (next_ == 1 && !(fills_ && k)) return refuse_second(t);
+  if (next_ == 1 && !(fills_ && left_out > 0)) return refuse_second(t);
   if (!k) {
     shifted_ = t - static_cast<double>(next_++) * sampling_time_;
     return refuse(fmt::format("is {}, which is no multiple of the sampling time {} after the first "
