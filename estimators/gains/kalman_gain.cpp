@@ -14,9 +14,9 @@ namespace cordon::estimators {
 namespace {
 
 constexpr int most_steps = 100'000;
-constexpr double tolerance = 1e-13;  // relative change of P
+constexpr double allowed_change = 1e-13;  // relative change of P
 constexpr double settled =
-    1e-6;  // a change that is still above the tolerance, but is rounding: it has stopped decreasing
+    1e-6;  // a change that is still above it, but is rounding: it has stopped decreasing
 constexpr int patience = 50;
 constexpr double floor_share = 1e-6;
 constexpr double least_condition =
@@ -73,7 +73,8 @@ Matrix steady_kalman_gain(const Model& model) {
     waited = change < least ? 0 : waited + 1;
     least = std::min(least, change);
     P = next;
-    if (change <= tolerance * scale || (waited >= patience && change <= settled * scale)) return L;
+    if (change <= allowed_change * scale || (waited >= patience && change <= settled * scale))
+      return L;
   }
   throw Error(Errc::invalid,
               "no gain was found: the recursion of the covariation did not settle, as where (A, C) "

@@ -11,7 +11,7 @@ namespace cordon::designers {
 
 namespace {
 
-constexpr double flat =
+constexpr double flatness =
     1e-9;  ///< of the largest distance among points: nearer ones span no more dimensions
 
 /// The columns that span the simplex of which each next corner is farthest from those before; fewer
@@ -22,7 +22,7 @@ std::vector<Index> corners(const Matrix& points) {
   const double largest = rest.colwise().norm().maxCoeff();
   while (static_cast<Index>(chosen.size()) <= points.rows()) {
     Index farthest = 0;
-    if (!(rest.colwise().norm().maxCoeff(&farthest) > flat * largest)) break;
+    if (!(rest.colwise().norm().maxCoeff(&farthest) > flatness * largest)) break;
     chosen.push_back(farthest);
     const Vector direction = rest.col(farthest).normalized();
     rest -= direction * (direction.transpose() * rest);

@@ -14,7 +14,7 @@ using linalg::transposed_product;
 
 namespace {
 
-constexpr double at_bound = 1e-7, tolerance = 1e-9;
+constexpr double at_bound = 1e-7, program_tolerance = 1e-9;
 constexpr int most_guesses = 12;
 
 /// Which columns are free, which stand at ±1 (in z), and which rows of F hold with equality.
@@ -69,17 +69,18 @@ bool correct(const QuadraticProgram& p, const QuadraticMinimum& found, Active& a
   z = found.z;
   for (std::size_t k = 0; k < active.fixed.size(); ++k) {
     const auto j = static_cast<Index>(k);
-    if (!active.fixed[k] && std::abs(z[j]) > 1 + tolerance) {
+    if (!active.fixed[k] && std::abs(z[j]) > 1 + program_tolerance) {
       z[j] = z[j] > 0 ? 1 : -1;
       active.fixed[k] = changed = true;
-    } else if (active.fixed[k] && reduced[j] * z[j] > tolerance) {
+    } else if (active.fixed[k] && reduced[j] * z[j] > program_tolerance) {
       active.fixed[k] = false;
       changed = true;
     }
   }
   for (std::size_t k = 0; k < active.row.size(); ++k) {
     const auto f = static_cast<Index>(k);
-    const bool should = active.row[k] ? of_F[f] >= -tolerance : above[f] < -tolerance;
+    const bool should =
+        active.row[k] ? of_F[f] >= -program_tolerance : above[f] < -program_tolerance;
     changed = changed || should != active.row[k];
     active.row[k] = should;
   }
@@ -91,10 +92,10 @@ bool is_feasible(const QuadraticProgram& p, const Vector& z) {
   const Vector rows = product(p.A, z);
   for (Index i = 0; i < rows.size(); ++i) {
     const double terms = std::abs(p.b[i]) + p.A.row(i).lpNorm<1>();
-    if (!(std::abs(rows[i] - p.b[i]) <= tolerance * terms)) return false;
+    if (!(std::abs(rows[i] - p.b[i]) <= program_tolerance * terms)) return false;
   }
   return std::all_of(z.begin(), z.end(),
-                     [](double entry) { return std::abs(entry) <= 1 + tolerance; });
+                     [](double entry) { return std::abs(entry) <= 1 + program_tolerance; });
 }
 
 }  // namespace

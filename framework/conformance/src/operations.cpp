@@ -28,7 +28,7 @@ void show_held(Applied& applied, const std::string& name, const Operand& operand
     applied.derived.emplace_back(name + " as held", describe(operand.form));
 }
 
-TestCase two_sets(const Setting& s, char second_space, Index second_dim) {
+TestCase two_operands(const Setting& s, char second_space, Index second_dim) {
   TestCase test = one_set(s);
   test.sets.push_back(s.make().set("Y", second_space, second_dim, s.shape));
   return test;
@@ -121,7 +121,7 @@ Vector miss(const Setting& s, Index p) {
 
 TestCase generate_intersection(const Setting& s) {
   const Index p = s.random.chance(0.5) ? s.n : other_dim(s);
-  TestCase test = two_sets(s, 'p', p);
+  TestCase test = two_operands(s, 'p', p);
   const Matrix R =
       p == s.n && s.random.chance(0.6) ? Matrix(Matrix::Identity(p, p)) : s.make().map(p, s.n);
   test.matrices.push_back({"R", 'p', 'n', R});
@@ -335,10 +335,11 @@ const std::vector<Operation>& operations() {
       {"import", one_set, apply_import, "X ⊆ import(X)", "import(X) claimed exact ⇒ import(X) = X"},
       {"affine_map", generate_map, apply_map, "T X + t ⊆ affine_map(X, T, t)",
        "affine_map claimed exact ⇒ it equals T X + t"},
-      {"sum", [](const Setting& s) { return two_sets(s, 'n', s.n); }, apply_sum,
+      {"sum", [](const Setting& s) { return two_operands(s, 'n', s.n); }, apply_sum,
        "x + y ∈ sum(X, Y) for x ∈ X, y ∈ Y", "sum claimed exact ⇒ it equals X ⊕ Y"},
-      {"product", [](const Setting& s) { return two_sets(s, 'p', other_dim(s)); }, apply_product,
-       "(x, y) ∈ product(X, Y) for x ∈ X, y ∈ Y", "product claimed exact ⇒ it equals X × Y"},
+      {"product", [](const Setting& s) { return two_operands(s, 'p', other_dim(s)); },
+       apply_product, "(x, y) ∈ product(X, Y) for x ∈ X, y ∈ Y",
+       "product claimed exact ⇒ it equals X × Y"},
       {"intersection", generate_intersection, apply_intersection,
        "{x ∈ X : R x ∈ Y} ⊆ intersection(X, R, Y)",
        "intersection claimed exact ⇒ it equals {x ∈ X : R x ∈ Y}"},
@@ -351,7 +352,7 @@ const std::vector<Operation>& operations() {
       {"interval_map", generate_interval_map, apply_interval_map,
        "A x ∈ interval_map(X, [A]) for A ∈ [A], x ∈ X",
        "interval_map claimed exact ⇒ it lies in the convex hull of all A X, A ∈ [A]"},
-      {"convex_hull", [](const Setting& s) { return two_sets(s, 'n', s.n); }, apply_convex_hull,
+      {"convex_hull", [](const Setting& s) { return two_operands(s, 'n', s.n); }, apply_convex_hull,
        "X ∪ Y ⊆ convex_hull(X, Y)",
        "convex_hull claimed exact ⇒ it equals the closure of conv(X ∪ Y)"},
       {"reduce", generate_reduced_set, apply_reduce, "X ⊆ reduce(X, budget)",

@@ -71,8 +71,8 @@ struct Opened {
 
 /// Opens the library, whose descriptor in the file is `announced`; here code of the plugin runs for
 /// the first time.
-std::optional<Refusal> open(const fs::path& file, const PluginDescriptor& announced,
-                            Opened& opened) {
+std::optional<Refusal> open_announced(const fs::path& file, const PluginDescriptor& announced,
+                                      Opened& opened) {
   std::string why;
   opened.library = open_library(file, why);
   if (!opened.library)
@@ -105,7 +105,7 @@ std::optional<Refusal> try_out(const fs::path& file, const ElfFile& elf,
   Trial trial = try_in_child([&] {
     const Catalogue empty;
     Opened opened;
-    std::optional<Refusal> refusal = open(file, announced, opened);
+    std::optional<Refusal> refusal = open_announced(file, announced, opened);
     if (refusal) return refusal;
     at_several_depths([&] {
       Batch batch(empty, announced.name);
@@ -135,7 +135,7 @@ std::optional<Refusal> admit(PluginReport& report, LoadedPlugins& plugins, Catal
   if (auto refusal = try_out(report.file, elf, announced)) return refusal;
   const KeptFloatingPoint kept;
   Opened opened;
-  if (auto refusal = open(report.file, announced, opened)) return refusal;
+  if (auto refusal = open_announced(report.file, announced, opened)) return refusal;
   Batch batch(catalogue, report.name);  // dies before the library does
   const auto broken = register_into(batch, *opened.descriptor);
   report.components = batch.components();

@@ -9,7 +9,7 @@ namespace cordon {
 
 namespace {
 
-constexpr Index width = Panels<float>::width;
+constexpr Index lanes = Panels<float>::width;
 constexpr float relaxation = 1.6F;
 constexpr float dependent =
     1e-4F;  ///< a row is taken for dependent when less than this share of it is left
@@ -21,7 +21,7 @@ BasisGuess::BasisGuess(const Matrix& A, VectorIn b)
       rows_(A),
       right_(static_cast<std::size_t>(A.rows())),
       w_(right_.size()),
-      sums_(static_cast<std::size_t>(A.rows() * width)),
+      sums_(static_cast<std::size_t>(A.rows() * lanes)),
       g_(static_cast<std::size_t>(rows_.padded_cols())),
       split_(g_.size()),
       dual_(g_.size()),
@@ -60,10 +60,10 @@ const Vector& BasisGuess::scores(VectorIn g) {
   least_squares();
   for (Index k = 0; k < rounds_; ++k) round(k == 0 ? 1.0F : relaxation);
   for (Index p = 0; p < rows_.panels(); ++p) {
-    float value[width];
+    float value[lanes];
     rows_.transpose_times(p, w_.data()).store(value);
-    const Index first = p * width;
-    for (Index k = 0; k < std::min(width, g.size() - first); ++k) {
+    const Index first = p * lanes;
+    for (Index k = 0; k < std::min(lanes, g.size() - first); ++k) {
       const std::size_t j = static_cast<std::size_t>(first + k);
       scores_[first + k] = std::abs(g_[j] - value[k] - dual_[j]);
     }
@@ -76,7 +76,7 @@ void BasisGuess::least_squares() {
   std::fill(sums_.begin(), sums_.end(), 0.0F);
   Line<float> squares;
   for (Index p = 0; p < rows_.panels(); ++p) {
-    const Line<float> g = Line<float>::load(&g_[static_cast<std::size_t>(p * width)]);
+    const Line<float> g = Line<float>::load(&g_[static_cast<std::size_t>(p * lanes)]);
     rows_.add_times(p, g, sums_.data());
     squares.add(g, g);
   }
@@ -92,7 +92,7 @@ void BasisGuess::round(float relax) {
   std::fill(sums_.begin(), sums_.end(), 0.0F);
   const Part zero{}, threshold = zero + threshold_;
   for (Index p = 0; p < rows_.panels(); ++p) {
-    const std::size_t first = static_cast<std::size_t>(p * width);
+    const std::size_t first = static_cast<std::size_t>(p * lanes);
     Line<float> value = rows_.transpose_times(p, w_.data());
     const Line<float> g = Line<float>::load(&g_[first]);
     Line<float> split = Line<float>::load(&split_[first]), dual = Line<float>::load(&dual_[first]);
@@ -115,7 +115,7 @@ void BasisGuess::round(float relax) {
 /// w = totals - threshold q.
 void BasisGuess::total(float threshold) {
   for (std::size_t i = 0; i < w_.size(); ++i)
-    w_[i] = Line<float>::load(&sums_[i * width]).total() - threshold * right_[i];
+    w_[i] = Line<float>::load(&sums_[i * lanes]).total() - threshold * right_[i];
 }
 
 }  // namespace cordon

@@ -16,7 +16,7 @@ using Kind = json::Value::Kind;
 
 constexpr std::size_t most_residuals = 24;  ///< figures
 constexpr std::size_t most_marks = 100;
-constexpr std::size_t most_events = 40;
+constexpr std::size_t most_listed = 40;
 constexpr double most_faults = 1000;  ///< columns of F that a study may have
 
 /// Names of the modes, from the first pipeline that has them.
@@ -94,8 +94,8 @@ void add_events(const RunFiles& files, Report& report) {
     std::size_t rows = 0;
     for (const Cursor& event : items_of(*summary, "events")) {
       if (!event.expect(Kind::object, "")) continue;
-      more = more || rows == most_events;
-      if (rows++ >= most_events) break;
+      more = more || rows == most_listed;
+      if (rows++ >= most_listed) break;
       const double k = value_of(event, "k");
       std::vector<Table::Cell> row{text_cell(files.pipelines()[p].name), number_cell(k, 15)};
       if (seconds > 0) row.push_back(number_cell(k * seconds, 6));
@@ -113,7 +113,7 @@ void add_events(const RunFiles& files, Report& report) {
       {"events", section::diagnosis, "Events",
        std::string("What the diagnosers said when; of the first seed, where there are several. An "
                    "exclusion is a proof.") +
-           (more ? fmt::format(" The first {} of each; results.json has all.", most_events) : ""),
+           (more ? fmt::format(" The first {} of each; results.json has all.", most_listed) : ""),
        std::move(table)});
 }
 
