@@ -35,11 +35,13 @@ std::string describe_system(const Study& study) {
           ? fmt::format(", sampled every {:.6g} s from continuous time (W then has {})",
                         study.labels.sampling_time, count(study.model.W.generators(), "generator"))
           : "";
-  return fmt::format("{}{}, {}, {}, {}, {}, {}{}{}", model.is_uncertain() ? "uncertain " : "",
-                     model.is_descriptor() ? "descriptor" : "lti", count(model.states(), "state"),
-                     count(model.inputs(), "input"), count(model.outputs(), "output"),
-                     count(model.disturbances(), "disturbance"), count(model.noises(), "noise"),
-                     faults, sampled);
+  const char* kind = model.is_descriptor() ? "descriptor" : "lti";
+  if (!study.model.is_linear()) kind = "nonlinear";
+  return fmt::format("{}{}, {}, {}, {}, {}, {}{}{}", model.is_uncertain() ? "uncertain " : "", kind,
+                     count(study.model.states(), "state"), count(study.model.inputs(), "input"),
+                     count(study.model.outputs(), "output"),
+                     count(study.model.disturbances(), "disturbance"),
+                     count(study.model.noises(), "noise"), faults, sampled);
 }
 
 constexpr std::int64_t most_samples = 1'000'000, most_simulated = 10'000;  // that are looked at

@@ -99,7 +99,7 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
           "refute them, or not at all where model and data leave no state\n",
           p.exact_claims_unproven, p.name);
     }
-    if (p.by_supports > 0) {
+    if (p.by_supports > 0 && !outcome.of_formulas) {
       passed_over += fmt::format(
           "evidence only: {} steps of {} are held against the exact set along directions; whole, "
           "that set is too large\n",
@@ -110,7 +110,9 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
                     std::to_string(p.proofs), std::to_string(p.exact_claims),
                     std::to_string(p.undecided)});
   }
-  if (outcome.by_samples) {
+  if (outcome.of_formulas) {
+    passed_over += "successors by formulas are drawn: checked for some of them, not for all\n";
+  } else if (outcome.by_samples) {
     passed_over +=
         "matrices are known by intervals only: checked for some drawn from them, not for all; "
         "claims of \"exact\" are not "

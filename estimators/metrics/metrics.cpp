@@ -87,7 +87,7 @@ class Radius final : public Metric {
 std::vector<Diagnostic> check_radius(const MetricContext& context, const Params& params) {
   if (!params.has("scales")) return {};
   const Vector& scales = params.vector("scales");
-  const Index n = context.model.linear.states();
+  const Index n = context.model.states();
   if (scales.size() != n) {
     return {
         {"/scales",

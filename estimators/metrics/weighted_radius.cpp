@@ -63,7 +63,7 @@ bool is_weight(const Matrix& W) {
 std::vector<Diagnostic> check_weight(const MetricContext& context, const Params& params) {
   if (!params.has("weight")) return {};
   const Matrix& W = params.matrix("weight");
-  const Index n = context.model.linear.states();
+  const Index n = context.model.states();
   std::vector<Diagnostic> problems;
   if (W.rows() != n || W.cols() != n) {
     problems.push_back({"/weight",

@@ -63,7 +63,7 @@ const LineForm& initial_set_from(const Model& model, const Params& params) {
 
 void check_set(const ObserverContext& context, const LineForm& set, const std::string& pointer,
                std::vector<Diagnostic>& problems) {
-  const Index n = context.model.linear.states();
+  const Index n = context.model.states();
   if (set.dim() != n) {
     problems.push_back(
         {pointer,
@@ -82,7 +82,7 @@ std::vector<Diagnostic> check_common(const ObserverContext& context, const Param
   std::vector<Diagnostic> problems;
   if (params.has("admissible_set"))
     check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);
-  const Index n = context.model.linear.states();
+  const Index n = context.model.states();
   if (params.integer("max_generators") < n) {
     problems.push_back({"/max_generators",
                         "is " + std::to_string(params.integer("max_generators")) +
@@ -113,7 +113,7 @@ void check_bounded_start(const ObserverContext& context, const Params& params,
                          std::vector<Diagnostic>& problems) {
   const bool own = params.has("initial_set");
   const LineForm& X0 = initial_set_from(context.model, params);
-  const Index n = context.model.linear.states();
+  const Index n = context.model.states();
   if (X0.dim() != n) {
     check_set(context, X0, own ? "/initial_set" : "", problems);
   } else if (eliminate_lines(X0).lines() > 0) {

@@ -87,7 +87,7 @@ TEST_CASE("hulls of five examples: no wider than the reference, never within wha
       // 110 hulls of this method is wider by 0.04 %.
       const double share = std::string(method.reference) == "zonotope_first_order_box" ? 5e-4 : 0.0;
       NonlinearRecursion recursion(model, backend, method.options);
-      recursion.start(backend->import(model->X0));
+      recursion.start(backend->import(model.X0));
       for (std::size_t k = 0; k < example["y"].size(); ++k) {
         CAPTURE(k);
         if (k > 0) recursion.predict(vector_of(example["u"][k - 1]), static_cast<Index>(k) - 1);
@@ -107,18 +107,18 @@ namespace {
 /// A trajectory of the formulas: disturbances and noises are drawn, half of them at vertices.
 class Trajectory {
  public:
-  Trajectory(std::shared_ptr<const NonlinearModel> model, std::uint64_t seed)
-      : model_(std::move(model)),
-        f_(model_->f, Rounding::nominal),
-        g_(model_->g, Rounding::nominal),
+  Trajectory(const Model& model, std::uint64_t seed)
+      : model_(model),
+        f_(model.nonlinear->f, Rounding::nominal),
+        g_(model.nonlinear->g, Rounding::nominal),
         random_(seed),
-        x_(point_of(model_->X0)) {}
+        x_(point_of(model.X0)) {}
 
   const Vector& x() const { return x_; }
   Vector output(VectorIn u, Index k) {
-    return values(g_, point_of(model_->V), u, k).head(model_->outputs());
+    return values(g_, point_of(model_.V), u, k).head(model_.outputs());
   }
-  void advance(VectorIn u, Index k) { x_ = values(f_, point_of(model_->W), u, k); }
+  void advance(VectorIn u, Index k) { x_ = values(f_, point_of(model_.W), u, k); }
 
  private:
   Vector point_of(const LineForm& set) {
@@ -145,21 +145,21 @@ class Trajectory {
     return made;
   }
 
-  std::shared_ptr<const NonlinearModel> model_;
+  Model model_;
   formulas::Evaluator f_, g_;
   std::mt19937_64 random_;
   Vector x_;
 };
 
 /// Steps of one trajectory that were enclosed.
-int follow(const std::shared_ptr<const NonlinearModel>& model, const Json& inputs,
-           const Method& method, std::uint64_t seed, Index steps) {
+int follow(const Model& model, const Json& inputs, const Method& method, std::uint64_t seed,
+           Index steps) {
   const auto backend = examples::backend(method.backend);
   NonlinearOptions options = method.options;
   options.budget = {12, 4};
   NonlinearRecursion recursion(model, backend, options);
   Trajectory trajectory(model, seed);
-  recursion.start(backend->import(model->X0));
+  recursion.start(backend->import(model.X0));
   for (Index k = 0; k < steps; ++k) {
     const Vector u = vector_of(inputs[as_size(k) % inputs.size()]);
     REQUIRE(recursion.correct({k, u, trajectory.output(u, k)}));

@@ -71,20 +71,21 @@ inline std::shared_ptr<const formulas::Function> function_of(const Json& system,
   return std::make_shared<const formulas::Function>(graph, nodes, differentiated, 2);
 }
 
-inline std::shared_ptr<const NonlinearModel> model_of(const Json& system) {
-  auto model = std::make_shared<NonlinearModel>();
-  model->f = function_of(system, "disturbances", names_of(system, "f"));
+inline Model model_of(const Json& system) {
+  auto formulas = std::make_shared<NonlinearModel>();
+  formulas->f = function_of(system, "disturbances", names_of(system, "f"));
   std::vector<std::string> rows = names_of(system, "g");
   for (const std::string& row : names_of(system, "invariants")) {
     rows.push_back(row);
-    ++model->invariants;
+    ++formulas->invariants;
   }
-  model->g = function_of(system, "noises", rows);
-  model->inputs = static_cast<Index>(names_of(system, "inputs").size());
-  model->X0 = zonotope_of(system["X0"]);
-  model->W = zonotope_of(system["W"]);
-  model->V = zonotope_of(system["V"]);
-  return model;
+  formulas->g = function_of(system, "noises", rows);
+  formulas->inputs = static_cast<Index>(names_of(system, "inputs").size());
+  return {.linear = {},
+          .X0 = zonotope_of(system["X0"]),
+          .W = zonotope_of(system["W"]),
+          .V = zonotope_of(system["V"]),
+          .nonlinear = std::move(formulas)};
 }
 
 }  // namespace cordon::test

@@ -21,15 +21,18 @@ class StudyRun {
   Outcome operator()(const std::string& arguments) const {
     return test::cordon_with(arguments + " 2>&1", "cd \"" + scratch_.path().string() + "\" &&");
   }
-  nlohmann::ordered_json pipeline(std::size_t i = 0) const {
-    return nlohmann::ordered_json::parse(bytes_of(scratch_ / "out/results.json"))["pipelines"][i];
+  nlohmann::ordered_json pipeline(std::size_t i = 0) const { return results()["pipelines"][i]; }
+  std::string text(const std::string& file) const { return bytes_of(scratch_ / file); }
+  nlohmann::ordered_json results() const {
+    return nlohmann::ordered_json::parse(bytes_of(scratch_ / "out/results.json"));
   }
-  void exchange(const std::string& from, const std::string& to) const {
-    std::string results = bytes_of(scratch_ / "out/results.json");
-    const std::size_t at = results.find(from);
+  void exchange(const std::string& from, const std::string& to,
+                const std::string& file = "out/results.json") const {
+    std::string text = bytes_of(scratch_ / file);
+    const std::size_t at = text.find(from);
     REQUIRE(at != std::string::npos);
-    results.replace(at, from.size(), to);
-    scratch_.write("out/results.json", results);
+    text.replace(at, from.size(), to);
+    scratch_.write(file, text);
     std::filesystem::remove(scratch_ / "out/manifest.json");
   }
 

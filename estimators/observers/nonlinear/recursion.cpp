@@ -55,24 +55,39 @@ std::vector<Index> all(Index count) {
 
 }  // namespace
 
-NonlinearRecursion::NonlinearRecursion(std::shared_ptr<const NonlinearModel> model,
+NonlinearRecursion::NonlinearRecursion(const Model& model,
                                        std::shared_ptr<const SetBackend> backend,
                                        NonlinearOptions options)
-    : model_(std::move(model)),
+    : model_(model.nonlinear),
       backend_(std::move(backend)),
       options_(options),
       f_(model_->f, model_->states(), options_.form, backend_->info().rounding, model_->undefined),
       g_(model_->g, model_->states(), options_.form, backend_->info().rounding, model_->undefined),
-      W_(backend_->import(model_->W)),
-      V_(backend_->import(model_->V)),
+      W_(backend_->import(model.W)),
+      V_(backend_->import(model.V)),
       W_hull_(W_->interval_hull()),
       V_hull_(V_->interval_hull()),
       f_variables_(as_size(model_->f->variables())),
-      g_variables_(as_size(model_->g->variables())) {}
+      g_variables_(as_size(model_->g->variables())) {
+  if (!model_->admissible) return;
+  admissible_ = backend_->import(*model_->admissible);
+  admissible_hull_ = admissible_->interval_hull();
+}
 
-void NonlinearRecursion::start(Enclosure X) {
+bool NonlinearRecursion::start(Enclosure X) {
   set(std::move(X));
   B_ = hull_;
+  return admit();
+}
+
+bool NonlinearRecursion::admit() {
+  if (B_.is_empty()) return false;
+  if (!admissible_.set) return true;
+  if (!options_.boxes_only && backend_->box(B_)->is_subset_of(*admissible_) != Answer::yes)
+    set(backend_->intersection(X_, Matrix::Identity(B_.dim(), B_.dim()), admissible_));
+  B_ = intersected(B_, admissible_hull_);
+  if (options_.boxes_only && !B_.is_empty()) set_box();
+  return narrow_box();
 }
 
 void NonlinearRecursion::set(Enclosure X) {
@@ -102,7 +117,7 @@ void NonlinearRecursion::set_variables(std::vector<Interval>& variables, const B
 
 std::string NonlinearRecursion::row_name(Index row) const { return "x_" + std::to_string(row + 1); }
 
-void NonlinearRecursion::predict(VectorIn u, Index k) {
+bool NonlinearRecursion::predict(VectorIn u, Index k) {
   const Index n = model_->states();
   set_variables(f_variables_, W_hull_, u, k);
   f_.set_box(f_variables_);
@@ -119,7 +134,7 @@ void NonlinearRecursion::predict(VectorIn u, Index k) {
   if (options_.boxes_only) {
     B_ = range;
     set_box();
-    return;
+    return admit();
   }
   AffineRows form = affine_rows(f_, all(n));
   for (Index row = 0; row < n; ++row)
@@ -130,6 +145,7 @@ void NonlinearRecursion::predict(VectorIn u, Index k) {
   const Term terms[] = {{disturbed, W_}, {unit, rest}};
   set(backend_->predict(X_, {form.slope.leftCols(n), form.offset, terms}));
   B_ = options_.carries_box ? intersected(hull_, range) : hull_;
+  return admit();
 }
 
 double NonlinearRecursion::target(Index row, const Sample& now) const {

@@ -36,20 +36,22 @@ struct NonlinearOptions {
 
 class NonlinearRecursion {
  public:
-  NonlinearRecursion(std::shared_ptr<const NonlinearModel> model,
-                     std::shared_ptr<const SetBackend> backend, NonlinearOptions options);
+  /// Of a model by formulas.
+  NonlinearRecursion(const Model& model, std::shared_ptr<const SetBackend> backend,
+                     NonlinearOptions options);
 
-  /// The set and the box that the state is in; no box: the hull.
-  void start(Enclosure X);
+  /// The set that the state is in, cut by the admissible set. False: no state is left, as below.
+  bool start(Enclosure X);
   /// To the next time. Throws Errc::unsupported where f has no bounded enclosure, with the row and
   /// the reason.
-  void predict(VectorIn u, Index k);
+  bool predict(VectorIn u, Index k);
   /// With the outputs of time k that are there. False: no state is left, which is proven.
   bool correct(const Sample& now);
   void reduce();
 
   const Enclosure& set() const { return X_; }
   const Box& box() const { return B_; }
+  const Box& hull() const { return hull_; }  ///< of the set
 
  private:
   /// The box of x, of w or v, u and k, as variables of f or g.
@@ -57,6 +59,7 @@ class NonlinearRecursion {
   bool contract(const Sample& now);
   bool contract_row(Index row, double value, double room);
   bool cut_by_box();
+  bool admit();  ///< cuts by the admissible set
   bool correct_rows(const Sample& now, const std::vector<Index>& rows);
   void set(Enclosure X);
   void set_box();     ///< X = B
@@ -70,8 +73,8 @@ class NonlinearRecursion {
   std::shared_ptr<const SetBackend> backend_;
   NonlinearOptions options_;
   formulas::BoxEnclosure f_, g_;
-  Enclosure W_, V_, X_;
-  Box W_hull_, V_hull_, B_;
+  Enclosure W_, V_, X_, admissible_;  ///< the last one perhaps none
+  Box W_hull_, V_hull_, admissible_hull_, B_;
   Box hull_;  ///< of X
   std::vector<Interval> f_variables_, g_variables_, before_row_;
 };

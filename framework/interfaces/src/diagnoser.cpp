@@ -29,7 +29,7 @@ void Diagnoser::start() {
 }
 
 Diagnosis Diagnoser::step(const Sample& now) {
-  detail::check_sample(now, before_, bank_[bank_.nominal].model.linear);
+  detail::check_sample(now, before_, bank_[bank_.nominal].model);
   if (!now.is_complete() && !takes_missing_outputs()) detail::refuse_missing(now, "diagnoser");
   if (!started_) start();
   const auto begin = std::chrono::steady_clock::now();

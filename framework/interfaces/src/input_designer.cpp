@@ -41,7 +41,7 @@ void check_pairs(const InputDesign& design, const ModeBank& bank) {
 }
 
 void check(const InputDesign& design, const ModeBank& bank, Index horizon) {
-  const Index inputs = bank[0].model.linear.inputs();
+  const Index inputs = bank[0].model.inputs();
   require_contract(design.u.rows() == horizon + 1 && design.u.cols() == inputs,
                    "its input is " + shape(design.u) + ", must be " + std::to_string(horizon + 1) +
                        " × " + std::to_string(inputs) + ", a row for each of k = 0 … " +
@@ -101,7 +101,7 @@ DesignOutcome InputDesigner::design(DesignControl& control) const {
   require_contract(is_number(outcome.lower_bound), "its lower bound is not a number");
   if (outcome.status == DesignStatus::infeasible) outcome.lower_bound = infinity;
   if (outcome.admissible_set) {
-    const Index states = bank_[0].model.linear.states(), dim = outcome.admissible_set->dim();
+    const Index states = bank_[0].model.states(), dim = outcome.admissible_set->dim();
     require_contract(dim == states, "its admissible set is of dimension " + std::to_string(dim) +
                                         ", the state of " + std::to_string(states));
     cordon::check(*outcome.admissible_set, "the admissible set of the input designer");

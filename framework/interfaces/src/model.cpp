@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "cordon/core/error.hpp"
+#include "cordon/interfaces/nonlinear_model.hpp"
 
 namespace cordon {
 
@@ -135,7 +136,16 @@ LinearModel with_outputs(const LinearModel& model, const std::vector<Index>& out
   return m;
 }
 
+Index Model::states() const { return nonlinear ? nonlinear->states() : linear.states(); }
+Index Model::inputs() const { return nonlinear ? nonlinear->inputs : linear.inputs(); }
+Index Model::outputs() const { return nonlinear ? nonlinear->outputs() : linear.outputs(); }
+Index Model::noises() const { return nonlinear ? nonlinear->noises() : linear.noises(); }
+Index Model::disturbances() const {
+  return nonlinear ? nonlinear->disturbances() : linear.disturbances();
+}
+
 Model with_outputs(const Model& model, const std::vector<Index>& outputs) {
+  if (model.nonlinear) throw Error(Errc::unsupported, "outputs of formulas are not left out");
   return {with_outputs(model.linear, outputs), model.X0, model.W, model.V, model.U};
 }
 

@@ -98,7 +98,7 @@ Observer::Stopwatch::~Stopwatch() { total_ += static_cast<double>(now_ns() - beg
 void Observer::start(std::optional<Enclosure> X0) {
   if (X0) {
     *X0 = backend_->import(*X0);
-    if ((*X0)->dim() != model_.linear.states())
+    if ((*X0)->dim() != model_.states())
       throw Error(Errc::dimension, "the initial set has another dimension than the state");
   }
   X0_ = std::move(X0);
@@ -113,7 +113,7 @@ void Observer::start(std::optional<Enclosure> X0) {
 void Observer::admit(const LineForm& admissible, Budget budget) {
   admissible_form_ = admissible;
   admissible_ = backend_->import(admissible);
-  if (admissible_->dim() != model_.linear.states())
+  if (admissible_->dim() != model_.states())
     throw Error(Errc::dimension, "the admissible set has another dimension than the state");
   admissible_budget_ = budget;
 }
@@ -181,24 +181,30 @@ void Observer::go_back() {
   inherited_ = last_inherited_;
 }
 
-std::vector<Index> Observer::outliers(const Set& X, const Sample& now) {
+Observer::OutputBounds Observer::output_bounds(const Set& X, Index output, const Sample& now) {
   const LinearModel& m = model_.linear;
   if (!noise_.set) noise_ = backend_->import(model_.V);
   const Box hull = m.C_radius.size() > 0 ? X.interval_hull() : Box{};
+  const Vector c = m.C.row(output).transpose(), v = m.Dv.row(output).transpose();
+  const Vector radius = m.C_radius.size() > 0 ? Vector(m.C_radius.row(output)) : Vector();
+  const double direct = m.D.row(output).dot(now.u);
+  return {direct - row_support(X, -c, radius, hull) - noise_->support(-v),
+          direct + row_support(X, c, radius, hull) + noise_->support(v),
+          m.D.row(output).cwiseAbs().dot(now.u.cwiseAbs())};
+}
+
+std::vector<Index> Observer::outliers(const Set& X, const Sample& now) {
   std::vector<Index> found;
   double worst = 0;
   for (const Index i : present_outputs(now)) {
-    const Vector c = m.C.row(i).transpose(), v = m.Dv.row(i).transpose();
-    const Vector radius = m.C_radius.size() > 0 ? Vector(m.C_radius.row(i)) : Vector();
-    const double direct = m.D.row(i).dot(now.u), y = now.y[i];
-    const double upper = direct + row_support(X, c, radius, hull) + noise_->support(v),
-                 lower = direct - row_support(X, -c, radius, hull) - noise_->support(-v);
+    const auto [lower, upper, terms] = output_bounds(X, i, now);
+    const double y = now.y[i];
     const double distance = std::max(y - upper, lower - y);  // NaN: open on both sides
-    // what cancels in D u and C x included
-    double size = std::max({std::abs(y), m.D.row(i).cwiseAbs().dot(now.u.cwiseAbs()),
-                            std::isfinite(upper) ? upper : 0, std::isfinite(lower) ? -lower : 0});
+    double size = std::max(
+        {std::abs(y), terms, std::isfinite(upper) ? upper : 0, std::isfinite(lower) ? -lower : 0});
     if (!(distance > tolerances::reported * size)) continue;
-    size += finite_terms(X.interval_hull(), c);
+    if (model_.is_linear())  // what cancels in C x
+      size += finite_terms(X.interval_hull(), model_.linear.C.row(i).transpose());
     if (!(distance > tolerances::reported * size)) continue;
     found.push_back(i);
     const double share = distance / std::max(upper - lower, tolerances::reported * size);
@@ -272,13 +278,13 @@ void Observer::explain(const Sample& now) {
 }
 
 Estimate Observer::step(const Sample& now) {
-  detail::check_sample(now, before_, model_.linear);
+  detail::check_sample(now, before_, model_);
   if (!now.is_complete() && !takes_missing_outputs()) detail::refuse_missing(now, "observer");
   times_ = {};
   left_out_.clear();
   contradiction_.reset();
   if (inconsistent_) {
-    Estimate estimate{now.k, backend_->empty(model_.linear.states()), Answer::no, {}};
+    Estimate estimate{now.k, backend_->empty(model_.states()), Answer::no, {}};
     estimate.set->is_empty(&estimate.why);
     before_ = now;
     return estimate;
@@ -301,7 +307,7 @@ void Observer::replace(Enclosure X) {
     throw Error(Errc::invalid,
                 "replace: no sample has been taken; give the set to start() instead");
   X = backend_->import(X);
-  if (X->dim() != model_.linear.states())
+  if (X->dim() != model_.states())
     throw Error(Errc::dimension, "the replacing set has another dimension than the state");
   inconsistent_ = false;
   inherited_ = last_inherited_ = Tightness::exact;

@@ -24,8 +24,7 @@ void check_missing(const Sample& sample) {
 
 }  // namespace
 
-void check_sample(const Sample& sample, const std::optional<Sample>& before,
-                  const LinearModel& model) {
+void check_sample(const Sample& sample, const std::optional<Sample>& before, const Model& model) {
   if (sample.u.size() != model.inputs() || sample.y.size() != model.outputs()) {
     throw Error(Errc::dimension,
                 "sample " + std::to_string(sample.k) + " has " + std::to_string(sample.u.size()) +

@@ -9,8 +9,7 @@ namespace cordon::detail {
 
 /// Throws unless the sample fits the model, has finite numbers where none is missing, and follows
 /// `before`.
-void check_sample(const Sample& sample, const std::optional<Sample>& before,
-                  const LinearModel& model);
+void check_sample(const Sample& sample, const std::optional<Sample>& before, const Model& model);
 
 /// Throws Errc::unsupported: this kind of component does not take the sample's missing outputs.
 [[noreturn]] void refuse_missing(const Sample& sample, const char* kind);

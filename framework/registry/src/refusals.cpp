@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the host asks of every component of a kind, before the component is asked itself.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "cordon/registry/registry.hpp"
@@ -8,14 +10,22 @@ namespace cordon {
 
 namespace {
 
-/// "use \"a\" or \"b\", or ", and nothing where no observer takes interval matrices.
-std::string observers_of_uncertain_models(const Registry& registry) {
+/// "use \"a\" or \"b\"", of the observers that take such models; nothing where there is none.
+std::string observers_that(bool ObserverEntry::*takes, const Registry& registry) {
   std::string names;
   for (const std::string& name : registry.names(ObserverEntry::kind)) {
-    if (registry.entry<ObserverEntry>(name)->takes_uncertainty)
+    if (registry.entry<ObserverEntry>(name)->*takes)
       names += (names.empty() ? "\"" : " or \"") + name + '"';
   }
-  return names.empty() ? "" : "use " + names + ", or ";
+  return names.empty() ? "" : "use " + names;
+}
+
+Diagnostic for_linear_models(const std::string& name, const std::string& suggestion) {
+  return {"/type", fmt::format("\"{}\" takes linear models, not formulas", name), suggestion};
+}
+
+bool is_linear(const ModeBank& bank) {
+  return std::ranges::all_of(bank.modes, [](const Mode& mode) { return mode.model.is_linear(); });
 }
 
 Diagnostic no_modes(const std::string& kind) {
@@ -29,6 +39,10 @@ Diagnostic no_modes(const std::string& kind) {
 /// wrong sets in silence.
 std::vector<Diagnostic> ObserverEntry::refusals(const ObserverContext& context,
                                                 const Registry& registry) const {
+  if (!takes_nonlinear && !context.model.is_linear()) {
+    return {
+        for_linear_models(info.name, observers_that(&ObserverEntry::takes_nonlinear, registry))};
+  }
   const LinearModel& model = context.model.linear;
   std::vector<Diagnostic> problems;
   if (!takes_ranges && model.has_ranges()) {
@@ -39,9 +53,10 @@ std::vector<Diagnostic> ObserverEntry::refusals(const ObserverContext& context,
          "use another observer, or give exact numbers"});
   }
   if (!takes_uncertainty && model.is_uncertain()) {
+    const std::string observers = observers_that(&ObserverEntry::takes_uncertainty, registry);
     problems.push_back(
         {"/type", fmt::format("\"{}\" does not take models with interval matrices", info.name),
-         observers_of_uncertain_models(registry) + "give exact matrices"});
+         (observers.empty() ? "" : observers + ", or ") + "give exact matrices"});
   }
   return problems;
 }
@@ -50,6 +65,7 @@ std::vector<Diagnostic> ObserverEntry::refusals(const ObserverContext& context,
 std::vector<Diagnostic> DesignerEntry::refusals(const DesignerContext& context,
                                                 const Registry&) const {
   const ModeBank& bank = context.bank;
+  if (!is_linear(bank)) return {for_linear_models(info.name, "")};
   std::vector<Diagnostic> problems;
   for (const Mode& mode : bank.modes) {
     if (!mode.model.linear.is_uncertain() && !mode.model.linear.has_ranges()) continue;
@@ -67,6 +83,7 @@ std::vector<Diagnostic> DesignerEntry::refusals(const DesignerContext& context,
 std::vector<Diagnostic> DiagnoserEntry::refusals(const DiagnoserContext& context,
                                                  const Registry&) const {
   const ModeBank& bank = context.bank;
+  if (!is_linear(bank)) return {for_linear_models(info.name, "")};
   std::vector<Diagnostic> problems;
   for (const Mode& mode : bank.modes) {
     if (takes_uncertainty || !mode.model.linear.is_uncertain()) continue;
@@ -86,6 +103,7 @@ std::vector<Diagnostic> DiagnoserEntry::refusals(const DiagnoserContext& context
 }
 
 std::vector<Diagnostic> GainEntry::refusals(const GainContext& context, const Registry&) const {
+  if (!context.model.is_linear()) return {for_linear_models(info.name, "")};
   if (!context.model.linear.is_descriptor()) return {};
   return {{"/type", fmt::format("\"{}\" designs gains for systems without E", info.name),
            "use a system of type \"lti\""}};

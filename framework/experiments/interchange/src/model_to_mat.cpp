@@ -114,6 +114,8 @@ Value to_mat(const LineForm& X) {
 
 Value to_mat(const ModeBank& bank, const Labels& labels) {
   const Mode& nominal = bank[bank.nominal];
+  if (!nominal.model.is_linear())
+    throw Error(Errc::unsupported, "a system by formulas has no form in MAT-files");
   Struct system = matrices(nominal.model);
   system.set("F", matrix(nominal.model.linear.F))
       .set("U", to_mat(nominal.model.U))

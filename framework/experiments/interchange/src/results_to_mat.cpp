@@ -246,7 +246,8 @@ void results_to_mat(const fs::path& directory, const Target& target, bool with_s
       ModeBank bank;
       bank.modes.push_back({part.nominal, part.model});
       bank.modes.insert(bank.modes.end(), part.modes.begin(), part.modes.end());
-      if (part.good) all.push_back({"system", mat::to_mat(bank, part.labels)});
+      if (part.good && part.model.is_linear())
+        all.push_back({"system", mat::to_mat(bank, part.labels)});
     }
     if (!problems.any() && sweep)
       all.push_back({"sweep", mat::to_mat(read_result_table(directory))});

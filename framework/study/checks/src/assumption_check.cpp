@@ -11,6 +11,7 @@
 #include "cordon/core/tolerances.hpp"
 #include "cordon/solvers/exact_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "formula_equations.hpp"
 #include "rounded_data.hpp"
 #include "study/checks/outside.hpp"
 
@@ -20,7 +21,7 @@ namespace {
 
 using What = FailedAssumption::What;
 
-constexpr double row_rounding = 1e-12;
+constexpr double row_rounding = 1e-12, of_formulas = 1e-12;
 constexpr std::size_t most_kept = 10'000;
 
 bool is_by_plant(const Study& study) {
@@ -58,6 +59,7 @@ bool is_missing(const LineForm& set, const Matrix& T, const Vector& value, const
 
 /// w, what leads from one record to the next, is none of W, by more than rounding.
 bool leaves_W(const Model& model, const Record& before, const Record& now) {
+  if (model.nonlinear) return no_disturbance_leads(model, before, now, of_formulas);
   const LinearModel& m = model.linear;
   const Vector &x = *before.truth, &u = before.sample.u, &next = *now.truth;
   const Vector pushed = m.actuator_center().cwiseProduct(u);
@@ -72,6 +74,7 @@ bool leaves_W(const Model& model, const Record& before, const Record& now) {
 
 /// The same of v, by the outputs that there are.
 bool leaves_V(const Model& model, const Record& now) {
+  if (model.nonlinear) return no_noise_shows(model, now, of_formulas);
   const LinearModel m = with_outputs(model.linear, present_outputs(now.sample));
   const Vector &x = *now.truth, &u = now.sample.u, y = without_missing(now.sample).y,
                g = m.sensor_center(), ranges = m.sensor_radius();
@@ -233,6 +236,8 @@ void AssumptionCheck::check_sets(const Record& record) {
     if (k >= from && is_left(set, *record.truth, What::admissible_set, k))
       fail(What::admissible_set, k);
   }
+  if (!other_ && record.truth && study_.model.nonlinear && misses_invariants(study_.model, record))
+    fail(What::invariants, k);
   if (!other_ && assumed_.inputs && clearly_outside(study_.model.U, record.sample.u))
     fail(What::U, k);
 }
@@ -283,6 +288,8 @@ std::string_view to_string(FailedAssumption::What what) noexcept {
       return "W_exactly";
     case FailedAssumption::What::V_exactly:
       return "V_exactly";
+    case FailedAssumption::What::invariants:
+      return "invariants";
   }
   return "initial_set";
 }
@@ -328,6 +335,8 @@ std::string text_of(const FailedAssumption& failed, const std::vector<std::strin
           "no v in V{} leads from x_{} to the very numbers of y_{}, which the simulation has "
           "rounded",
           of, k, k);
+    case FailedAssumption::What::invariants:
+      return fmt::format("x_{} does not meet the invariants of the system", k);
   }
   return "";
 }

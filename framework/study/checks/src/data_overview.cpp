@@ -30,7 +30,7 @@ std::string unused_time(const Study& study) {
 }  // namespace
 
 DataOverview overview_of_data(const Study& study, std::int64_t most) {
-  const Index outputs = study.model.linear.outputs();
+  const Index outputs = study.model.outputs();
   const LineForm& U = study.model.U;
   const bool is_bounded = U.dim() > 0 && U.lines() < U.dim();
   DataOverview found;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "rounded_data.hpp"
 
+#include "formula_equations.hpp"
 #include "study/checks/common_runs.hpp"
 #include "study/checks/equations.hpp"
 
@@ -31,6 +32,7 @@ bool has_no_solution(Equations& rows) {
 }  // namespace
 
 bool contradicts_dynamics(const Model& model, const Record& before, const Record& now) {
+  if (model.nonlinear) return no_disturbance_leads(model, before, now, 0);
   const LinearModel& m = model.linear;
   if (has_ranges(m)) return false;
   const Index n = m.states();
@@ -42,6 +44,7 @@ bool contradicts_dynamics(const Model& model, const Record& before, const Record
 }
 
 bool contradicts_outputs(const Model& model, const Record& now) {
+  if (model.nonlinear) return no_noise_shows(model, now, 0);
   const Sample sample = without_missing(now.sample);
   const LinearModel m = with_outputs(model.linear, present_outputs(now.sample));
   if (has_ranges(m)) return false;

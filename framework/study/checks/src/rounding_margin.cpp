@@ -28,6 +28,7 @@ Vector along_lines(const LineForm& X, const Vector& terms) {
 
 RoundingMargin::RoundingMargin(const Model& model, const LineForm& initial_set, Rounding rounding)
     : model_(model.linear),
+      is_linear_(model.is_linear()),
       of_a_step_(rounding == Rounding::nominal ? of_operations : of_observers),
       of_the_data_(rounding == Rounding::nominal ? of_operations : of_outward_data),
       initial_(reach_of(initial_set)),
@@ -37,7 +38,8 @@ RoundingMargin::RoundingMargin(const Model& model, const LineForm& initial_set, 
       disturbance_(model.linear.Bw.cwiseAbs() * reach_of(model.W)),
       noise_(model.linear.Dv.cwiseAbs() * reach_of(model.V)),
       error_(Vector::Zero(model.linear.states())),
-      largest_(Vector::Zero(model.linear.states())) {
+      largest_(Vector::Zero(model.states())) {
+  if (!is_linear_) return;
   if (!model_.is_descriptor()) {
     take_paths();
     return;
@@ -113,6 +115,12 @@ Vector RoundingMargin::left_open_by(const Vector& data, const LineForm& X) const
 }
 
 Vector RoundingMargin::next(const LineForm& X, const Sample* before, const Sample& now) {
+  if (!is_linear_) {
+    largest_ = largest_.cwiseMax(reach_of(X));
+    of_outputs_ = of_operations * now.y.cwiseAbs();
+    of_outputs_(now.missing).setZero();
+    return of_all * largest_;
+  }
   const Matrix A = model_.A.cwiseAbs();
   Vector terms = reach_of(X);
   if (before && reach_.size() > 0) {

@@ -55,7 +55,7 @@ void require_file(const std::filesystem::path& file) {
 
 }  // namespace
 
-CsvSource::CsvSource(const CsvSpec& spec, const LinearModel& model, std::vector<std::string> modes,
+CsvSource::CsvSource(const CsvSpec& spec, const Model& model, std::vector<std::string> modes,
                      double sampling_time)
     : file_(spec.file),
       inputs_{spec.inputs, {}, "/data/csv/inputs"},
@@ -84,7 +84,7 @@ CsvSource::CsvSource(const CsvSpec& spec, const LinearModel& model, std::vector<
   reader_->next(header);
 }
 
-void CsvSource::check_sizes(const CsvSpec& spec, const LinearModel& model) const {
+void CsvSource::check_sizes(const CsvSpec& spec, const Model& model) const {
   std::vector<Diagnostic> problems;
   const auto require = [&](std::size_t size, Index wanted, const char* pointer, const char* of) {
     if (static_cast<Index>(size) == wanted) return;

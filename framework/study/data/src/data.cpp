@@ -5,6 +5,7 @@
 
 #include "study/data/csv_source.hpp"
 #include "study/data/dropouts.hpp"
+#include "study/data/formula_source.hpp"
 #include "study/data/plant_source.hpp"
 #include "study/data/simulate.hpp"
 
@@ -26,6 +27,8 @@ bool all_designed(const Study& study) {
 }
 
 std::unique_ptr<DataSource> simulated(const Study& study, const SimulateSpec& spec, bool modes) {
+  if (study.model.nonlinear)
+    return std::make_unique<detail::FormulaSource>(study.model, spec, study.file.string());
   if (spec.made_plant)
     return std::make_unique<detail::PlantSource>(study.model, spec, study.file.string(), modes);
   const bool additive = study.model.linear.faults() > 0;
@@ -48,7 +51,7 @@ std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_off
   }
   std::vector<std::string> modes{study.nominal};
   for (const Mode& mode : study.modes) modes.push_back(mode.name);
-  return std::make_unique<detail::CsvSource>(std::get<CsvSpec>(study.data), study.model.linear,
+  return std::make_unique<detail::CsvSource>(std::get<CsvSpec>(study.data), study.model,
                                              std::move(modes), study.labels.sampling_time);
 }
 

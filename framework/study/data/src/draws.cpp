@@ -72,16 +72,16 @@ void check_simulation(const Model& model, const SimulateSpec& spec, const std::s
          ""});
   };
   const LinearModel& linear = model.linear;
-  require(static_cast<Index>(spec.input.size()), linear.inputs(), "/data/simulate/input",
+  require(static_cast<Index>(spec.input.size()), model.inputs(), "/data/simulate/input",
           "one signal per column of /system/B");
-  require(model.W.dim(), linear.disturbances(), "/system/W", "the columns of /system/Bw");
-  require(model.V.dim(), linear.noises(), "/system/V", "the columns of /system/Dv");
+  require(model.W.dim(), model.disturbances(), "/system/W", "the columns of /system/Bw");
+  require(model.V.dim(), model.noises(), "/system/V", "the columns of /system/Dv");
   if (spec.x0)
-    require(spec.x0->size(), linear.states(), "/data/simulate/x0", "the rows of /system/A");
+    require(spec.x0->size(), model.states(), "/data/simulate/x0", "the rows of /system/A");
   if (spec.x0 && !spec.x0->allFinite())
     problems.push_back({"/data/simulate/x0", "has a NaN or infinite number", ""});
   if (spec.x0_set)
-    require(spec.x0_set->dim(), linear.states(), "/data/simulate/x0", "the rows of /system/A");
+    require(spec.x0_set->dim(), model.states(), "/data/simulate/x0", "the rows of /system/A");
   if (spec.x0 && spec.x0_set)
     problems.push_back(
         {"/data/simulate/x0", "is both a state and a set of states", "give one of them"});
@@ -94,20 +94,20 @@ void check_simulation(const Model& model, const SimulateSpec& spec, const std::s
   check_radius(linear.B, linear.B_radius, "/system/B", problems);
   check_radius(linear.C, linear.C_radius, "/system/C", problems);
   if (linear.faults() > 0)
-    require(linear.F.rows(), linear.states(), "/system/F", "the rows of /system/A");
+    require(linear.F.rows(), model.states(), "/system/F", "the rows of /system/A");
   check_additive_faults(spec, linear.faults(), problems);
-  check_dropouts(spec, linear.outputs(), problems);
+  check_dropouts(spec, model.outputs(), problems);
   if (spec.made_plant && !spec.additive_faults.empty()) {
     problems.push_back({"/data/simulate/additive_faults",
                         "cannot be simulated with a plant: they are about the linear model", ""});
   }
   for (std::size_t i = 0; i < spec.faults.size(); ++i) {
     const Model& fault = spec.faults[i].model;
-    require(fault.linear.states(), linear.states(), place_of_fault(i), "the states of /system");
-    require(fault.linear.inputs(), linear.inputs(), place_of_fault(i), "the inputs of /system");
-    require(fault.linear.outputs(), linear.outputs(), place_of_fault(i), "the outputs of /system");
-    require(fault.W.dim(), fault.linear.disturbances(), place_of_fault(i), "the columns of its Bw");
-    require(fault.V.dim(), fault.linear.noises(), place_of_fault(i), "the columns of its Dv");
+    require(fault.states(), model.states(), place_of_fault(i), "the states of /system");
+    require(fault.inputs(), model.inputs(), place_of_fault(i), "the inputs of /system");
+    require(fault.outputs(), model.outputs(), place_of_fault(i), "the outputs of /system");
+    require(fault.W.dim(), fault.disturbances(), place_of_fault(i), "the columns of its Bw");
+    require(fault.V.dim(), fault.noises(), place_of_fault(i), "the columns of its Dv");
     require(fault.linear.faults(), linear.faults(), place_of_fault(i), "the columns of /system/F");
     for (const auto& [A, radius] : {std::pair(&fault.linear.A, &fault.linear.A_radius),
                                     std::pair(&fault.linear.B, &fault.linear.B_radius),

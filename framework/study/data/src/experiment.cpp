@@ -80,7 +80,7 @@ std::unique_ptr<DataSource> open_experiment(const Study& study, const ModeBank& 
                                             MatrixIn u, std::uint64_t seed_offset) {
   if (mode < 0 || mode >= bank.size())
     throw Error(Errc::dimension, "an experiment: there is no such mode");
-  if (u.rows() == 0 || u.cols() != bank[mode].model.linear.inputs())
+  if (u.rows() == 0 || u.cols() != bank[mode].model.inputs())
     throw Error(Errc::dimension, "an experiment: the inputs have another size than the model");
   if (!u.allFinite())
     throw Error(Errc::not_finite, "an experiment: the inputs have a NaN or infinite number");

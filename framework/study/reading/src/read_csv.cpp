@@ -7,7 +7,7 @@ namespace cordon::json {
 namespace {
 
 std::vector<std::string> read_columns(const Cursor& csv, const char* key, std::optional<Index> size,
-                                      const char* like, bool needed) {
+                                      const std::string& like, bool needed) {
   const bool absent = !csv.find(key);
   if (absent && (!needed || size == Index{0})) return {};
   const auto at = csv.need(key, "a list of column names");
@@ -75,9 +75,9 @@ DataPart read_csv(const Cursor& at, const SystemPart& system, const std::filesys
                      "name the CSV file inside it");
     }
   }
-  spec.inputs = read_columns(at, "inputs", sizes.inputs, "the columns of /system/B", true);
-  spec.outputs = read_columns(at, "outputs", sizes.outputs, "the rows of /system/C", true);
-  spec.truth = read_columns(at, "truth", sizes.states, "the rows of /system/A", false);
+  spec.inputs = read_columns(at, "inputs", sizes.inputs, system.inputs_at(), true);
+  spec.outputs = read_columns(at, "outputs", sizes.outputs, system.outputs_at(), true);
+  spec.truth = read_columns(at, "truth", sizes.states, system.states_at(), false);
   if (const auto mode = at.find("mode")) spec.mode = read_text(*mode, 4096).value_or("");
   if (const auto missing = at.find("missing")) {
     const auto name = read_choice(*missing, missing_value_names());

@@ -53,19 +53,20 @@ Signal read_signal(const Cursor& at) {
   return signal;
 }
 
-void read_input(const Cursor& simulate, std::optional<Index> inputs, const DataUse& use,
+void read_input(const Cursor& simulate, const SystemPart& system, const DataUse& use,
                 std::vector<Signal>& out) {
+  const std::optional<Index> inputs = system.sizes.inputs;
   const auto at = simulate.find("input");
   if (!at) {
     if (inputs && *inputs > 0)
-      simulate.need("input", "a list of " + counted(*inputs, "signal") +
-                                 ", one per column of /system/B" + use.reason());
+      simulate.need("input",
+                    "a list of " + counted(*inputs, "signal") + ", one per input" + use.reason());
     return;
   }
-  if (!at->expect(Kind::array, "a list of signals, one per column of /system/B")) return;
+  if (!at->expect(Kind::array, "a list of signals, one per input")) return;
   if (inputs && static_cast<Index>(at->size()) != *inputs) {
     at->error("has " + counted(static_cast<Index>(at->size()), "signal") + ", must have " +
-              std::to_string(*inputs) + " like the columns of /system/B");
+              std::to_string(*inputs) + " like " + system.inputs_at());
   }
   for (std::size_t i = 0; i < at->size(); ++i) out.push_back(read_signal(at->item(i)));
 }
@@ -136,7 +137,7 @@ void expect_bounded(const Cursor& data, const LineForm& X, const char* key) {
 }
 
 /// Where a simulation starts: a state, or a bounded set that it is drawn from.
-void read_start(const Cursor& at, const Sizes& sizes, SimulateSpec& spec,
+void read_start(const Cursor& at, const SystemPart& system, SimulateSpec& spec,
                 std::vector<std::string>& warnings) {
   if (!at.is(Kind::object)) {
     if (!at.expect(
@@ -144,16 +145,26 @@ void read_start(const Cursor& at, const Sizes& sizes, SimulateSpec& spec,
             "write a state, or a bounded set that it is drawn from: {\"type\": \"box\", ...}"))
       return;
     spec.x0 = read_vector(at, max_dimension);
-    if (spec.x0 && sizes.states) expect_size(at, *spec.x0, *sizes.states, "the rows of /system/A");
+    if (spec.x0 && system.sizes.states)
+      expect_size(at, *spec.x0, *system.sizes.states, system.states_at());
     return;
   }
   spec.x0_set = read_set(at, warnings);
   if (!spec.x0_set) return;
-  if (sizes.states && spec.x0_set->dim() != *sizes.states) {
+  if (system.sizes.states && spec.x0_set->dim() != *system.sizes.states) {
     at.error("has dimension " + std::to_string(spec.x0_set->dim()) + ", must have " +
-             std::to_string(*sizes.states) + " like the rows of /system/A");
+             std::to_string(*system.sizes.states) + " like " + system.states_at());
   } else if (is_bounded(*spec.x0_set) != Answer::yes) {
     at.error("is unbounded: no state can be drawn from it", "give a bounded set, or one state");
+  }
+}
+
+/// What is about the matrices of linear systems.
+void refuse_what_is_linear(const Cursor& at) {
+  for (const char* key : {"plant", "parameters", "faults", "additive_faults"}) {
+    if (const auto found = at.find(key))
+      found->error("is for linear systems, and this one is \"nonlinear\"",
+                   "remove it: the formulas themselves are simulated");
   }
 }
 
@@ -165,7 +176,8 @@ void read_stream(const Cursor& at, const SystemPart& system, const DataUse& use,
   if (const auto steps =
           at.need("steps", "the number of steps: samples k = 0 ... steps" + use.reason()))
     spec.steps = read_integer(*steps, 1, max_steps).value_or(0);
-  if (const auto parameters = at.find("parameters")) {
+  if (system.formulas) refuse_what_is_linear(at);
+  if (const auto parameters = at.find("parameters"); parameters && !system.formulas) {
     if (at.find("plant")) {
       parameters->error("cannot stand beside \"plant\", which takes the place of the model",
                         "remove one of the two");
@@ -173,16 +185,16 @@ void read_stream(const Cursor& at, const SystemPart& system, const DataUse& use,
       spec.parameters = *name == "varying" ? ParameterDraw::varying : ParameterDraw::constant;
     }
   }
-  read_input(at, system.sizes.inputs, use, spec.input);
+  read_input(at, system, use, spec.input);
   const auto plant = at.find("plant");
-  if (plant) read_plant(*plant, system, spec, context);
+  if (plant && !system.formulas) read_plant(*plant, system, spec, context);
   if (system.good) {
     if (!plant) expect_bounded(at, system.model.W, "W");
     expect_bounded(at, system.model.V, "V");
   }
-  if (const auto faults = at.find("faults"))
+  if (const auto faults = at.find("faults"); faults && !system.formulas)
     read_faults(*faults, system, spec, written_faults, context.warnings);
-  if (const auto additive = at.find("additive_faults"))
+  if (const auto additive = at.find("additive_faults"); additive && !system.formulas)
     AdditiveFaultReader(spec, system.sizes.faults, context.warnings).read(*additive);
   if (const auto dropouts = at.find("dropouts"))
     read_dropouts(*dropouts, system.sizes.outputs, spec, context.warnings);
@@ -225,7 +237,7 @@ SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const Dat
                                       noise_names().begin());
     }
   }
-  if (const auto x0 = at.find("x0")) read_start(*x0, system.sizes, spec, context.warnings);
+  if (const auto x0 = at.find("x0")) read_start(*x0, system, spec, context.warnings);
   if (use.streamed()) {
     read_stream(at, system, use, context, spec, written_faults);
   } else {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/interfaces/descriptor_matrix.hpp"
 #include "read_continuous.hpp"
+#include "read_nonlinear.hpp"
 #include "study/reading/read_parts.hpp"
 #include "study/reading/read_sets.hpp"
 
@@ -294,19 +295,30 @@ SystemPart SystemReader::read() {
   return std::move(part_);
 }
 
+bool is_nonlinear(const Cursor& system) {
+  if (!system.is(Value::Kind::object)) return false;
+  const auto type = system.find("type");
+  return type && type->is(Value::Kind::text) && type->value().text() == "nonlinear";
+}
+
 }  // namespace
 
 const std::vector<std::string>& system_types() {
-  static const std::vector<std::string> names{"lti", "interval_lti", "descriptor"};
+  static const std::vector<std::string> names{"lti", "interval_lti", "descriptor", "nonlinear"};
   return names;
 }
 
 SystemPart read_system(const Cursor& system, std::vector<std::string>& warnings) {
+  if (is_nonlinear(system)) return read_nonlinear(system, warnings);
   return SystemReader(system, nullptr, warnings).read();
 }
 
 SystemPart read_mode_system(const Cursor& system, const SystemPart& nominal,
                             std::vector<std::string>& warnings) {
+  if (is_nonlinear(system)) {
+    system.find("type")->error("modes are linear systems", "use the type of /system");
+    return {};
+  }
   return SystemReader(system, &nominal, warnings).read();
 }
 

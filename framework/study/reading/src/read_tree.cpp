@@ -97,6 +97,7 @@ void TreeReader::read_sections() {
   study.labels = std::move(system.labels);
   study.continuous = system.continuous != nullptr;
   written.modes = std::move(system.written);
+  written.formulas = std::move(system.formulas);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cordon/interfaces/nonlinear_model.hpp"
 #include "resolve_sweep.hpp"
 #include "study/reading/read_parts.hpp"
 #include "study/text/json_writer.hpp"
@@ -109,6 +110,26 @@ Json to_json(const Model& model) {
   system["D"] = to_json(linear.D);
   system["Dv"] = to_json(linear.Dv);
   if (linear.faults() > 0) system["F"] = to_json(linear.F);
+  system["X0"] = to_json(model.X0);
+  system["W"] = to_json(model.W);
+  system["V"] = to_json(model.V);
+  return system;
+}
+
+Json to_json(const Model& model, const WrittenFormulas& written) {
+  Json system;
+  system["type"] = "nonlinear";
+  const char* lists[] = {"states", "inputs", "disturbances", "noises"};
+  for (std::size_t i = 0; i < written.names.size(); ++i) {
+    if (!written.names[i].empty()) system[lists[i]] = written.names[i];
+  }
+  for (const auto& [name, value] : written.parameters) system["parameters"][name] = value;
+  system["f"] = written.f;
+  system["g"] = written.g;
+  if (!written.invariants.empty()) system["invariants"] = written.invariants;
+  const NonlinearModel& formulas = *model.nonlinear;
+  if (formulas.admissible) system["admissible"] = to_json(*formulas.admissible);
+  if (formulas.undefined == formulas::Undefined::assumed) system["domain"] = "assumed";
   system["X0"] = to_json(model.X0);
   system["W"] = to_json(model.W);
   system["V"] = to_json(model.V);
@@ -291,7 +312,8 @@ std::string resolve(const Study& study, const Written& written,
   root["cordon"] = 1;
   root["title"] = study.title;
   if (!written.plugins.empty()) root["plugins"] = written.plugins;
-  root["system"] = to_json(study.model);
+  root["system"] =
+      written.formulas ? to_json(study.model, *written.formulas) : to_json(study.model);
   add_labels(root["system"], study.labels);
   add_modes(root["system"], study, written);
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {

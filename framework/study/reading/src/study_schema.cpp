@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cordon/formulas/parse.hpp"
 #include "schema_parts.hpp"
 #include "study/reading/read_parts.hpp"
 #include "study/reading/read_sets.hpp"
@@ -146,6 +147,36 @@ Json systems(const Json& more) {
             described(descriptor, "E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v")}}};
 }
 
+/// Systems by formulas.
+Json nonlinear_system(const Json& names, const Json& sampling_time) {
+  const Json set = reference("set"), formulas = list_of(text(formulas::longest_formula)),
+             identifiers = list_of(text(60));
+  const Json parameters{{"type", "object"}, {"additionalProperties", {{"type", "number"}}}};
+  const Json system =
+      typed("nonlinear",
+            {{"states", described(identifiers, "names: a letter, then letters, digits and _")},
+             {"inputs", identifiers},
+             {"disturbances", identifiers},
+             {"noises", identifiers},
+             {"parameters", described(parameters, "numbers with names")},
+             {"f", described(formulas, "the next state, one formula per state")},
+             {"g", described(formulas, "the outputs")},
+             {"invariants", described(formulas, "are 0 for the true state at all times")},
+             {"admissible", described(set, "holds the state at all times, as is assumed")},
+             {"domain", described(one_of({"refused", "assumed"}),
+                                  "where a formula is not defined on a set: no estimate, or the "
+                                  "state is assumed to lie where it is defined")},
+             {"X0", set},
+             {"W", set},
+             {"V", set},
+             {"U", set},
+             {"nominal", text(200)},
+             {"names", names},
+             {"sampling_time", sampling_time}},
+            {"states", "f", "g", "X0"});
+  return described(system, "x_{k+1} = f(x_k, w_k, u_k, k), y_k = g(x_k, v_k, u_k, k)");
+}
+
 Json effectiveness() {
   const Json share{{"type", "number"}, {"minimum", 0}, {"maximum", 1}};
   const Json range{{"type", "array"}, {"items", share}, {"minItems", 2}, {"maxItems", 2}};
@@ -212,11 +243,13 @@ Json definitions(const Registry& registry) {
   Json kinds;
   for (const char* kind : {"states", "inputs", "outputs", "disturbances", "noises", "faults"})
     kinds[kind] = names;
+  const Json system_names = described(
+      object(kinds, {}), "for people: one name each, with the unit in brackets, \"level [m]\"");
+  const Json sampling_time = described(Json{{"type", "number"}, {"exclusiveMinimum", 0}},
+                                       "seconds from k to k + 1; a continuous model needs it");
   defs["system"] = systems(
-      {{"names", described(object(kinds, {}),
-                           "for people: one name each, with the unit in brackets, \"level [m]\"")},
-       {"sampling_time", described(Json{{"type", "number"}, {"exclusiveMinimum", 0}},
-                                   "seconds from k to k + 1; a continuous model needs it")},
+      {{"names", system_names},
+       {"sampling_time", sampling_time},
        {"F",
         described(reference("matrix"), "n × faults: directions of additive faults, a column each")},
        {"U", described(reference("set"), "contains every input u; the whole space by default")},
@@ -224,6 +257,7 @@ Json definitions(const Registry& registry) {
        {"modes",
         described(Json{{"type", "array"}, {"items", reference("mode")}, {"maxItems", 1000}},
                   "the faults that diagnosers tell apart")}});
+  defs["system"]["oneOf"].push_back(nonlinear_system(system_names, sampling_time));
   defs["mode_system"] = systems(Json::object());
   defs["effectiveness"] = effectiveness();
   defs["mode"] = modes();

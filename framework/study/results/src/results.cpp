@@ -121,7 +121,7 @@ Results::Results(const Study& study, const Registry& registry, const DirectoryLo
       run_(run_file_) {
   begin_results(registry);
   begin_run(registry);
-  if (inputs_file_) write_inputs_header(*inputs_file_, study.model.linear.inputs(), study.labels);
+  if (inputs_file_) write_inputs_header(*inputs_file_, study.model.inputs(), study.labels);
 }
 
 Results::~Results() = default;
@@ -378,7 +378,7 @@ void Results::write_summaries() {
 }
 
 std::vector<std::filesystem::path> Results::commit(const RunOutcome& outcome) {
-  if (!header_written_) write_header(study_.model.linear.states());
+  if (!header_written_) write_header(study_.model.states());
   if (diagnosis_file_ && !diagnosis_header_written_)
     write_diagnosis_header(study_.modes.size() + 1);
   write_summaries();

@@ -90,7 +90,7 @@ void Results::write_diagnosis_header(std::size_t modes) {
     names.push_back("candidate" + of_mode);
     names.push_back("consistent" + of_mode);
     for (const char* bound : {"lower", "upper"}) {
-      for (Index i = 0; i < study_.model.linear.outputs(); ++i)
+      for (Index i = 0; i < study_.model.outputs(); ++i)
         names.push_back(csv_field(heading_of(study_.labels.outputs, bound + of_mode, i)));
     }
   }
@@ -115,7 +115,7 @@ void Results::diagnosis(const DiagnosisResult& result) {
                                result.truth ? std::to_string(*result.truth) : "",
                                std::to_string(diagnosis.since),
                                mode_field(diagnosis.suggested)};
-  const auto outputs = static_cast<std::size_t>(study_.model.linear.outputs());
+  const auto outputs = static_cast<std::size_t>(study_.model.outputs());
   for (const ModeEvidence& evidence : diagnosis.modes) {
     row.emplace_back(evidence.candidate ? "1" : "0");
     row.emplace_back(to_string(evidence.consistent));

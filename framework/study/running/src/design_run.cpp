@@ -104,7 +104,7 @@ class DesignRun final : public PipelineRun {
   void experiment() {
     std::optional<Diagnosis> last;
     Index isolated_at = -1;
-    Matrix shown(design().best->u.rows(), bank_[mode_].model.linear.outputs());
+    Matrix shown(design().best->u.rows(), bank_[mode_].model.outputs());
     DiagnosisScore score([](const DiagnosisSegment&) {});
     guarded([&] {
       const auto data = open_experiment(context_.study, bank_, mode_, design().best->u,

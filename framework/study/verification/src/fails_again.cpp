@@ -28,7 +28,7 @@ Answer fails_again(const RecordedRun& run, const RecordedPipeline& pipeline) {
   if (estimation && estimation->admissible_set)
     assumed.admissible_sets.push_back({*estimation->admissible_set, 0});
   CsvSpec with_truth = run.data;
-  for (Index i = 0; i < run.model.linear.states(); ++i)
+  for (Index i = 0; i < run.model.states(); ++i)
     with_truth.truth.push_back(heading_of(run.labels.states, "x", i));
   study.data = with_truth;
   const std::unique_ptr<DataSource> data = open_data(study);

@@ -29,7 +29,8 @@ bool same_assumptions(const RecordedEstimation& a, const RecordedEstimation& b) 
 
 FeasibleSequence::FeasibleSequence(const Model& model, const RecordedEstimation& estimation)
     : model_(model), estimation_(estimation), uncertain_(model.linear.is_uncertain()) {
-  if (model.linear.states() <= most_states_of_polytopes) begin_from(estimation.initial_set);
+  if (model.is_linear() && model.states() <= most_states_of_polytopes)
+    begin_from(estimation.initial_set);
 }
 
 void FeasibleSequence::begin_from(const LineForm& initial_set) {

@@ -168,4 +168,10 @@ void StepCheck::bound_proof(Index i, bool upper) {
   }
   violated(name + " is not what its stored proof proves in rational arithmetic", false);
 }
+
+StepCheck::Successors unknown_successors(Index n) {
+  const auto none = [n] { return make_empty(n); };
+  return {none, [none](double) { return none(); }, [] { return std::nullopt; }};
+}
+
 }  // namespace cordon::verification

@@ -53,6 +53,9 @@ class StepCheck {
   void against(const Successors& successors, const Matrix& directions, bool holds_them_all,
                const std::atomic<bool>* stop);
 
+  /// X_k and the hull hold these states, which are consistent.
+  void against(const std::vector<Vector>& states);
+
   /// An inclusion could not be checked at all.
   void skipped(std::string why) { open(std::move(why)); }
 
@@ -116,5 +119,8 @@ class StepCheck {
   std::string first_undecided_;
   bool exact_holds_ = false, exact_stays_ = false;
 };
+
+/// Where the set before is not recorded: rounding is not taken to move anything.
+StepCheck::Successors unknown_successors(Index n);
 
 }  // namespace cordon::verification

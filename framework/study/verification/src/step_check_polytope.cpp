@@ -309,4 +309,10 @@ void StepCheck::against(const Polytope& F, const Successors& successors) {
   exact_holds_ = !violation_ && undecided_ == before;
 }
 
+void StepCheck::against(const std::vector<Vector>& states) {
+  const Successors none = unknown_successors(size_.size());
+  for (std::size_t i = 0; i < states.size() && !violation_; ++i)
+    contains_vertex(rational::exact(states[i]), none);
+}
+
 }  // namespace cordon::verification

@@ -14,6 +14,7 @@
 #include "cordon/study/data.hpp"
 #include "fails_again.hpp"
 #include "feasible_sequence.hpp"
+#include "formula_samples.hpp"
 #include "solvers/polytope_representation.hpp"
 #include "step_check.hpp"
 #include "study/checks/design_check.hpp"
@@ -73,12 +74,6 @@ bool against_polytope(StepCheck& check, const Polytope& F,
   return true;
 }
 
-/// Where the set before is not recorded: rounding is not taken to move anything.
-StepCheck::Successors unknown_successors(Index n) {
-  const auto none = [n] { return make_empty(n); };
-  return {none, [none](double) { return none(); }, [] { return std::nullopt; }};
-}
-
 class Verification {
  public:
   Verification(const std::filesystem::path& directory, const VerifyOptions& options)
@@ -102,7 +97,8 @@ class Verification {
 
  private:
   void check_pipelines() {
-    outcome_.by_samples = run_.model.linear.is_uncertain();
+    outcome_.of_formulas = !run_.model.is_linear();
+    outcome_.by_samples = run_.model.linear.is_uncertain() || outcome_.of_formulas;
     std::optional<FeasibleSequence> feasible;
     for (std::size_t p = 0; p < run_.pipelines.size(); ++p) {
       const RecordedPipeline& pipeline = run_.pipelines[p];
@@ -170,7 +166,7 @@ class Verification {
     std::optional<RecordedSet> row = sets_.next();
     if (!row) refuse(0, fmt::format("ends before pipeline \"{}\", k = {}", pipeline.name, step.k));
     if (row->pipeline != pipeline.name || row->k != step.k ||
-        row->set.dim() != run_.model.linear.states()) {
+        row->set.dim() != run_.model.states()) {
       refuse(row->line, fmt::format("does not hold the set of pipeline \"{}\", k = {}",
                                     pipeline.name, step.k));
     }
@@ -308,6 +304,17 @@ class Verification {
     Vector states, outputs;
   };
 
+  /// Of matrices that are known by intervals, for two draws.
+  template <class SuccessorsIn>
+  void check_in_directions(StepCheck& check, Index k, bool follows_its_sets, SuccessorsIn&& in) {
+    const Matrix directions = directions_of(run_.model.states(), options_, k);
+    Model model = run_.model;
+    for (int draw = 0; draw < (model.linear.is_uncertain() ? 2 : 1); ++draw) {
+      model.linear = drawn(run_.model.linear, k, draw);
+      check.against(in(model), directions, follows_its_sets, options_.stop);
+    }
+  }
+
   void check_step(std::size_t p, std::size_t i, const RecordedSet& row, const Margins& margins,
                   const std::optional<Polytope>& F, const RecordedSet* row_before,
                   const Transition& transition) {
@@ -339,20 +346,17 @@ class Verification {
     };
     const bool follows = i == 0 || anew || row_before;
     if (!check.violation()) {
-      if (F &&
-          against_polytope(
-              check, *F, follows ? successors_in(run_.model) : unknown_successors(row.set.dim()))) {
+      if (!run_.model.is_linear()) {
+        if (!samples_) samples_.emplace(run_.model, options_.seed);
+        found.by_supports += samples_->check(check, follows ? &start : nullptr, transition) ? 1 : 0;
+      } else if (F && against_polytope(check, *F,
+                                       follows ? successors_in(run_.model)
+                                               : unknown_successors(row.set.dim()))) {
         ++found.by_polytopes;
       } else if (!follows) {
         check.skipped("the step does not follow the one before: its successors are not checked");
       } else {
-        const Matrix directions = directions_of(run_.model.linear.states(), options_, row.k);
-        Model model = run_.model;
-        for (int draw = 0; draw < (uncertain ? 2 : 1); ++draw) {
-          model.linear = drawn(run_.model.linear, row.k, draw);
-          check.against(successors_in(model), directions, estimation.follows_its_sets,
-                        options_.stop);
-        }
+        check_in_directions(check, row.k, estimation.follows_its_sets, successors_in);
         ++found.by_supports;
       }
     }
@@ -376,7 +380,8 @@ class Verification {
   const VerifyOptions& options_;
   SetReader sets_;
   std::vector<std::string> names_;
-  bool late_ = false;  ///< the deadline has passed
+  std::optional<FormulaSamples> samples_;  ///< of a model by formulas
+  bool late_ = false;                      ///< the deadline has passed
   VerifyOutcome outcome_;
   std::optional<CddlibListener> cddlib_;
 };

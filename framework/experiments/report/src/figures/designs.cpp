@@ -343,7 +343,7 @@ void add_designs(const RunFiles& files, Report& report) {
   std::vector<Design> designs;
   for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
     if (files.pipelines()[p].kind != PipelineKind::design) continue;
-    if (auto design = design_of(files, p, system.model.linear.states()))
+    if (auto design = design_of(files, p, system.model.states()))
       designs.push_back(std::move(*design));
   }
   files.check();  // what follows computes with the models

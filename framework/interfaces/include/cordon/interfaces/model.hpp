@@ -86,11 +86,22 @@ struct LinearModel {
 /// Errc::dimension, and Errc::invalid for bounds outside [0,1] or in the wrong order.
 LinearModel with_exact_effectiveness_applied(LinearModel model);
 
+struct NonlinearModel;  // nonlinear_model.hpp
+
 /// A model with its bounds: x₀ ∈ X0, w_k ∈ W, v_k ∈ V for all k. U contains every input; Rⁿ where
 /// nothing is said of it. Observers know u and do not use U, statements made in advance rest on it.
 struct Model {
   LinearModel linear;
   LineForm X0, W, V, U = {};
+  /// In place of `linear`, which is of size 0 then.
+  std::shared_ptr<const NonlinearModel> nonlinear = {};
+
+  bool is_linear() const { return !nonlinear; }
+  Index states() const;
+  Index inputs() const;
+  Index outputs() const;
+  Index disturbances() const;
+  Index noises() const;
 };
 
 /// One way the plant can behave: healthy, or with one fault or several.
@@ -132,6 +143,7 @@ Sample without_missing(const Sample& sample);
 /// are left out. A sample with missing outputs says of the state what the complete sample of the
 /// others says in this model.
 LinearModel with_outputs(const LinearModel& model, const std::vector<Index>& outputs);
+/// Of a linear model.
 Model with_outputs(const Model& model, const std::vector<Index>& outputs);
 
 }  // namespace cordon

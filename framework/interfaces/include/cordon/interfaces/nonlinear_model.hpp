@@ -2,15 +2,17 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
-#include "cordon/core/line_form.hpp"
 #include "cordon/formulas/evaluator.hpp"
+#include "cordon/interfaces/model.hpp"
 
 namespace cordon {
 
 /// Discrete-time model by formulas
-///   x_k = f(x_{k-1}, w_{k-1}, u_{k-1}, k-1),   y_k = g(x_k, v_k, u_k, k),   h(x_k) = 0
-/// with x_0 ∈ X0, w_k ∈ W, v_k ∈ V. Immutable; the functions are shared.
+///   x_k = f(x_{k-1}, w_{k-1}, u_{k-1}, k-1),   y_k = g(x_k, v_k, u_k, k),   h(x_k) = 0,   x_k ∈
+///   X_A
+/// beside the bounds of a Model. Immutable; the functions are shared.
 struct NonlinearModel {
   /// f over the variables x, w, u, k, in this order; derivatives by x and w, of order 2.
   std::shared_ptr<const formulas::Function> f;
@@ -18,7 +20,8 @@ struct NonlinearModel {
   std::shared_ptr<const formulas::Function> g;
   Index invariants = 0;  ///< rows of h
   Index inputs = 0;
-  LineForm X0, W, V;
+  /// X_A, assumed to hold the state at all times; none: Rⁿ.
+  std::optional<LineForm> admissible = {};
   /// Whether states are assumed to lie where all formulas are defined.
   formulas::Undefined undefined = formulas::Undefined::refused;
 

@@ -21,7 +21,8 @@ struct Estimate {
 
 /// A sample that contradicts what was known before it. The prediction is the observer's estimate of
 /// the same time without the sample's outputs; y_i misses it by the distance of y_i from the
-/// interval of C x + D u + Dv v over the prediction, the matrices and V.
+/// interval of C x + D u + Dv v over the prediction, the matrices and V, of g(x, v, u, k) where the
+/// model is one of formulas.
 struct Contradiction {
   Index k = 0;
   /// Of those that miss the prediction the one that does so by the most of its interval's size; -1:
@@ -124,6 +125,13 @@ class Observer {
   /// estimate is claimed `outer` then. Costs the hull of every estimate, and an intersection where
   /// it is cut.
   void admit(const LineForm& admissible, Budget budget);
+
+  /// Of an output over a set of states, and the size of known terms in it.
+  struct OutputBounds {
+    double lower = 0, upper = 0, terms = 0;
+  };
+  /// By default of a linear model.
+  virtual OutputBounds output_bounds(const Set& X, Index output, const Sample& now);
 
   enum class Phase { predict, correct, reduce };
   /// Runs `work` and books its time to the phase.

@@ -121,6 +121,8 @@ struct ObserverEntry {
   bool takes_ranges = false;
   /// The same of models with parametric uncertainty.
   bool takes_uncertainty = false;
+  /// The same of models by formulas.
+  bool takes_nonlinear = false;
 
   std::vector<Diagnostic> refusals(const ObserverContext& context, const Registry& registry) const;
 };

@@ -163,7 +163,8 @@ struct FailedAssumption {
     W,               ///< what leads from x_k to x_{k+1} in the true mode
     V,               ///< what leads from x_k to y_k in the true mode
     W_exactly,       ///< the same as W, by the rounding of the simulation
-    V_exactly        ///< the same as V, by the rounding of the simulation
+    V_exactly,       ///< the same as V, by the rounding of the simulation
+    invariants       ///< x_k, of a nonlinear system
   };
   What what = What::initial_set;
   Index k = 0;                   ///< of the x, u, w or v that lies outside

@@ -85,6 +85,7 @@ struct VerifyOutcome {
   bool interrupted = false;
   bool by_samples =
       false;  ///< matrices are known by intervals only: checked for some of them, not for all
+  bool of_formulas = false;  ///< the model is one of formulas: some of its successors, not all
   std::vector<VerifiedPipeline> pipelines;
   std::optional<Violation> violation;                   ///< the first; the check ends there
   std::optional<SecondOpinionFindings> second_opinion;  ///< if it was asked for
@@ -105,6 +106,8 @@ struct VerifyOutcome {
 /// Of a model with interval matrices, F_k is computed for matrices drawn from them, anew at every
 /// step: a subset of the states that are consistent, so that whatever lies outside is a violation,
 /// but an estimate that holds F_k may still miss others. Claims of `exact` stay undecided there.
+/// Of a model by formulas, drawn successors of X_{k-1} that are proven consistent with y_k have to
+/// lie in X_k and its hull, in rational arithmetic; where none is found the step is undecided.
 /// With `second_opinion`, every conversion of a polyhedron and every exact linear program is
 /// answered by cddlib once more, up to a size; the checks go on with the project's own answers.
 /// That takes a lock in this process, and up to about 5 s during which `stop` is not looked at.

@@ -14,9 +14,9 @@ using namespace json;
 using Kind = Value::Kind;
 using What = FailedAssumption::What;
 
-constexpr std::array all_assumptions{What::initial_set, What::restart_set, What::admissible_set,
-                                     What::U,           What::modes,       What::W,
-                                     What::V,           What::W_exactly,   What::V_exactly};
+constexpr std::array all_assumptions{
+    What::initial_set, What::restart_set, What::admissible_set, What::U,         What::modes,
+    What::W,           What::V,           What::W_exactly,      What::V_exactly, What::invariants};
 
 /// Index of a mode by its name; -1 for null.
 std::optional<Index> read_mode(const Cursor& at, const std::vector<std::string>& names) {

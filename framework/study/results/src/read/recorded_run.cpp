@@ -224,8 +224,8 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
   } else if (at.find("diagnoser")) {
     pipeline.task = RecordedDiagnosis{};
   } else {
-    const Index n = system.model.linear.states();
-    auto estimation = read_estimation(at, n, steps.of(at, index, n, system.model.linear.outputs()));
+    const Index n = system.model.states();
+    auto estimation = read_estimation(at, n, steps.of(at, index, n, system.model.outputs()));
     if (estimation) pipeline.task = std::move(*estimation);  // else the run is refused
   }
   read_summary(at, system, pipeline);
@@ -247,7 +247,7 @@ bool may_have_gaps(const Cursor& study) {
          (csv && (csv->find("missing") || csv->find("irregular")));
 }
 
-CsvSpec data_of(std::filesystem::path file, const LinearModel& model, const Labels& labels,
+CsvSpec data_of(std::filesystem::path file, const Model& model, const Labels& labels,
                 MissingValue missing) {
   CsvSpec spec;
   spec.missing = missing;
@@ -344,7 +344,7 @@ RecordedRun read_run(const std::filesystem::path& directory) {
     run.labels = std::move(part.labels);
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());
-  run.data = data_of(run.files.file("data.csv"), run.model.linear, run.labels, run.data.missing);
+  run.data = data_of(run.files.file("data.csv"), run.model, run.labels, run.data.missing);
   check_times(run.data.file);
   return run;
 }

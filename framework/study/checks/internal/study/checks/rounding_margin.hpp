@@ -22,7 +22,7 @@ namespace cordon::detail {
 /// which may cancel or add 1e-14 of its terms. With outward rounding the operations enclose, and
 /// what is left is what observers compute from model and data before: ε = 1e-14, ε_t = 1e-15. A
 /// bound of the size of rounding, not a proof: where e_k grows without limit, so does the error, up
-/// to 1e-9 of the largest terms there were.
+/// to 1e-9 of the largest terms there were. Of a model by formulas τ_k = 1e-9 max_{j ≤ k} r_j.
 class RoundingMargin {
  public:
   RoundingMargin(const Model& model, const LineForm& initial_set, Rounding rounding);
@@ -42,6 +42,7 @@ class RoundingMargin {
   Vector left_open_by(const Vector& data, const LineForm& X) const;
 
   const LinearModel& model_;
+  bool is_linear_;
   double of_a_step_, of_the_data_;  ///< ε, ε_t
   Vector initial_;                  ///< a_0
   Matrix dynamic_, static_;         ///< M, N

@@ -21,7 +21,7 @@ class CsvSource final : public DataSource {
  public:
   /// `modes`: the names that the column of modes may hold, in the order of the bank;
   /// `sampling_time`: for a column of times.
-  CsvSource(const CsvSpec& spec, const LinearModel& model, std::vector<std::string> modes = {},
+  CsvSource(const CsvSpec& spec, const Model& model, std::vector<std::string> modes = {},
             double sampling_time = 0);
 
   std::optional<Record> next() override;
@@ -35,7 +35,7 @@ class CsvSource final : public DataSource {
     std::string pointer;
   };
 
-  void check_sizes(const CsvSpec& spec, const LinearModel& model) const;
+  void check_sizes(const CsvSpec& spec, const Model& model) const;
   void validate();
   void locate(const CsvRow& header);
   void find_columns(Columns& columns, const std::vector<std::string>& header);

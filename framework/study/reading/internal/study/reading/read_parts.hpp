@@ -4,11 +4,13 @@
 // are known.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cordon/core/interval_matrix.hpp"
@@ -59,6 +61,13 @@ struct WrittenMode {
 /// ones.
 Model model_of(const WrittenMode& mode, const Model& nominal);
 
+/// A system of formulas as it is written.
+struct WrittenFormulas {
+  std::array<std::vector<std::string>, 4> names;  ///< of states, inputs, disturbances and noises
+  std::vector<std::pair<std::string, double>> parameters;
+  std::vector<std::string> f, g, invariants;
+};
+
 struct ContinuousPart;
 struct SystemPart {
   Model model;  ///< of the nominal mode
@@ -71,6 +80,12 @@ struct SystemPart {
   Labels labels;
   /// What it was before it was sampled; nothing of a system that is written from k to k + 1.
   std::shared_ptr<const ContinuousPart> continuous;
+  std::optional<WrittenFormulas> formulas;  ///< of a nonlinear system
+
+  // What tells how many there are, for messages.
+  std::string states_at() const { return formulas ? "/system/states" : "the rows of /system/A"; }
+  std::string inputs_at() const { return formulas ? "/system/inputs" : "the columns of /system/B"; }
+  std::string outputs_at() const { return formulas ? "/system/g" : "the rows of /system/C"; }
 };
 const std::vector<std::string>& system_types();
 /// A system with its modes.
@@ -182,6 +197,7 @@ struct Written {
   std::string csv_file;
   std::vector<WrittenMode> modes;
   std::vector<WrittenFault> faults;
+  std::optional<WrittenFormulas> formulas = {};
 };
 /// The study as JSON with every default: keys in a fixed order, sets in exchange form, doubles in
 /// the shortest form that reads back equal. With a sweep, what its paths lead into stays as it is

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The recursion for models by formulas as a component:
+//   X̂_0 = X0 corrected by y_0;   X̂_k = f(X̂_{k-1}, W, u_{k-1}, k-1) enclosed, corrected by y_k and
+//   the invariants, reduced to the budget.
+// A box is carried beside the set: the estimate is their intersection.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "components.hpp"
+#include "cordon/core/rounding.hpp"
+#include "cordon/interfaces/line_form_set.hpp"
+#include "observers/nonlinear/recursion.hpp"
+#include "observers/observer_parameters.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+NonlinearOptions options_from(const Params& params, const BackendInfo& backend) {
+  NonlinearOptions options;
+  // Cuts by the box make sets wider where intersections are enclosed.
+  options.row_by_row = !backend.intersections;
+  options.boxes_only = params.text("method") == "interval";
+  if (params.text("method") == "mean_value") options.form = formulas::AffineForm::mean_value;
+  options.contracts = params.flag("contraction");
+  options.carries_box = params.flag("box");
+  options.budget = budget_from(params);
+  return options;
+}
+
+class NonlinearObserver final : public Observer {
+ public:
+  NonlinearObserver(const ObserverContext& context, const Params& params)
+      : Observer(context.model, context.backend),
+        X0_(initial_set_from(model(), params)),
+        recursion_(model(), context.backend, options_from(params, context.backend->info())),
+        outputs_(model().nonlinear->g, context.backend->info().rounding,
+                 model().nonlinear->undefined),
+        V_hull_(context.backend->import(model().V)->interval_hull()) {}
+
+  LineForm initial_set() const override { return X0_; }
+  std::optional<LineForm> admissible_set() const override { return model().nonlinear->admissible; }
+  Tightness claim() const override { return Tightness::outer; }
+  bool follows_its_sets() const override { return true; }
+  bool takes_missing_outputs() const override { return true; }
+
+ private:
+  Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
+    const bool is_there =
+        timed(Phase::predict, [&] { return recursion_.start(X0 ? *X0 : backend().import(X0_)); });
+    return corrected(is_there, first);
+  }
+
+  Enclosure do_step(const Sample& before, const Sample& now) override {
+    const bool is_there =
+        timed(Phase::predict, [&] { return recursion_.predict(before.u, before.k); });
+    return corrected(is_there, now);
+  }
+
+  void do_replace(const Enclosure& X) override { recursion_.start(X); }
+
+  Enclosure corrected(bool is_there, const Sample& now) {
+    is_there = is_there && timed(Phase::correct, [&] { return recursion_.correct(now); });
+    if (!is_there) return backend().empty(model().states());
+    timed(Phase::reduce, [&] {
+      recursion_.reduce();
+      return true;
+    });
+    return estimate();
+  }
+
+  /// X ∩ B; where the backend cannot hold it, in exchange form.
+  Enclosure estimate() const {
+    const Box &box = recursion_.box(), &hull = recursion_.hull();
+    const Enclosure& X = recursion_.set();
+    const bool is_narrower = (box.lower.array() > hull.lower.array()).any() ||
+                             (box.upper.array() < hull.upper.array()).any();
+    if (!is_narrower) return X;
+    const Matrix unit = Matrix::Identity(box.dim(), box.dim());
+    if (backend().info().intersections) {
+      return backend().intersection(X, unit, backend().box(box));
+    }
+    const LineForm form = X->line_form();
+    Box wider = box;  // by what the difference of the centres is rounded
+    for (Index i = 0; i < box.dim(); ++i) {
+      const double terms =
+          std::abs(form.c[i]) + std::max(std::abs(box.lower[i]), std::abs(box.upper[i]));
+      wider.lower[i] -= 4 * rounding::unit * terms;
+      wider.upper[i] += 4 * rounding::unit * terms;
+    }
+    return line_form_set(intersection(form, unit, make_box(wider)), backend().info().rounding,
+                         Tightness::outer);
+  }
+
+  OutputBounds output_bounds(const Set& X, Index output, const Sample& now) override {
+    const Box hull = X.interval_hull();
+    std::vector<Interval> variables;
+    for (const Box* box : std::initializer_list<const Box*>{&hull, &V_hull_})
+      for (Index i = 0; i < box->dim(); ++i) variables.push_back({box->lower[i], box->upper[i]});
+    for (const double known : now.u) variables.push_back({known, known});
+    variables.push_back({static_cast<double>(now.k), static_cast<double>(now.k)});
+    outputs_.evaluate(variables);
+    const Interval bounds = outputs_.value(output);
+    outputs_.bound_rounding();
+    return {bounds.lower, bounds.upper, outputs_.rounding_error(output)};
+  }
+
+  LineForm X0_;
+  NonlinearRecursion recursion_;
+  formulas::Evaluator outputs_;  ///< g, and h
+  Box V_hull_;
+};
+
+std::vector<Diagnostic> check_nonlinear(const ObserverContext& context, const Params& params) {
+  if (context.model.is_linear()) {
+    return {{"/type", "\"nonlinear\" takes systems of type \"nonlinear\", and this one is linear",
+             "use the observer \"prediction_correction\""}};
+  }
+  std::vector<Diagnostic> problems = check_common(context, params);
+  if (!problems.empty()) return problems;
+  check_bounded_start(context, params, problems);
+  check_noises(context, problems);
+  return problems;
+}
+
+}  // namespace
+
+void register_nonlinear(Registrar& registrar) {
+  ParamSchema schema = common_parameters();
+  schema.choice("method",
+                "the enclosure of f and g: boxes alone (interval), or a set of the "
+                "backend by the mean value or by the first order with bounded second derivatives",
+                {"interval", "mean_value", "first_order"}, "first_order");
+  schema.flag("contraction", "contract a box by the outputs and invariants (HC4)", true);
+  schema.flag("box", "carry a box beside the set: the estimate is their intersection", true);
+  registrar.add(ObserverEntry{
+      {"nonlinear",
+       "prediction and correction for formulas, enclosed by ranges and derivatives over boxes; any "
+       "backend",
+       "Kuhn1998; Combastel2005; Rego2020a; Benhamou1999", std::move(schema)},
+      check_nonlinear,
+      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+        return std::make_unique<NonlinearObserver>(context, params);
+      },
+      false,
+      false,
+      true});
+}
+
+}  // namespace cordon::estimators

@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "read_nonlinear.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "cordon/formulas/parse.hpp"
+#include "cordon/interfaces/nonlinear_model.hpp"
+#include "study/reading/read_sets.hpp"
+
+namespace cordon::json {
+
+namespace {
+
+using Kind = Value::Kind;
+using NameList = std::vector<std::string>;
+constexpr std::size_t longest_name = 60;  // bytes
+constexpr const char* box_form =
+    "the set of all values it can take, for example {\"type\": \"box\", \"lower\": [...], "
+    "\"upper\": [...]}";
+
+/// What a name stands for.
+enum class Role { state, input, disturbance, noise, parameter };
+struct RoleWords {
+  const char* key;   ///< of the list in the system
+  const char* noun;  ///< for people
+};
+constexpr std::array<RoleWords, 5> words{{{"states", "a state"},
+                                          {"inputs", "an input"},
+                                          {"disturbances", "a disturbance"},
+                                          {"noises", "a noise"},
+                                          {"parameters", "a parameter"}}};
+
+/// The formulas of one key, and who may stand in them.
+struct Section {
+  const char* key;
+  std::vector<Role> variables;  ///< in the order of the function's
+  bool uses_time;
+  const char* form;
+};
+
+class NonlinearReader {
+ public:
+  NonlinearReader(const Cursor& system, std::vector<std::string>& warnings)
+      : system_(system), warnings_(warnings), before_(system.problems().met()) {}
+
+  SystemPart read();
+
+ private:
+  void refuse_what_is_linear();
+  void read_variables(Role role);
+  void take_name(const Cursor& at, const std::string& name, Role role);
+  void read_parameters();
+  void read_formulas(const char* key, std::size_t least, NameList& out);
+  void compile();
+  std::shared_ptr<const formulas::Function> function(std::vector<const Section*> sections,
+                                                     Role noise);
+  void parse(const Section& section, formulas::Graph& graph, std::vector<int>& nodes);
+  formulas::Vocabulary vocabulary(const Section& section, formulas::Graph& graph) const;
+  NameList variables_of(const Section& section) const;
+  void report(const Cursor& at, const std::vector<formulas::FormulaError>& errors) const;
+  void warn_of_unused(const formulas::Function& function, Role role);
+  void read_sets();
+  void read_set_of(const char* key, Role role, LineForm& out);
+  void read_admissible();
+  void name_labels();
+  NameList& names(Role role) { return written_.names[static_cast<std::size_t>(role)]; }
+  const NameList& names(Role role) const { return written_.names[static_cast<std::size_t>(role)]; }
+  Index count(Role role) const { return static_cast<Index>(names(role).size()); }
+
+  const Cursor& system_;
+  std::vector<std::string>& warnings_;
+  std::size_t before_;
+  SystemPart part_;
+  WrittenFormulas written_;
+  std::map<std::string, Role> known_;
+  NonlinearModel model_;
+};
+
+const Section& section_f() {
+  static const Section section{"f",
+                               {Role::state, Role::disturbance, Role::input},
+                               true,
+                               "one formula per state: x at the next time"};
+  return section;
+}
+const Section& section_g() {
+  static const Section section{"g",
+                               {Role::state, Role::noise, Role::input},
+                               true,
+                               "one formula per output, [\"x1 + v1\"] for example"};
+  return section;
+}
+const Section& section_h() {
+  static const Section section{
+      "invariants", {Role::state}, false, "formulas that are 0 for the true state at all times"};
+  return section;
+}
+
+/// Keys of linear systems, which somebody may have left.
+void NonlinearReader::refuse_what_is_linear() {
+  const NameList keys{"type", "states", "inputs",     "disturbances", "noises", "parameters",
+                      "f",    "g",      "invariants", "admissible",   "domain", "X0",
+                      "W",    "V",      "U",          "nominal",      "names",  "sampling_time"};
+  for (const char* key : {"A", "B", "C", "D", "E", "F", "Bw", "Dv"}) {
+    if (const auto at = system_.find(key)) {
+      at->error("is a matrix of linear systems, and this one is \"nonlinear\"",
+                "remove it, and write formulas in f and g");
+    }
+  }
+  if (const auto at = system_.find("modes"))
+    at->error("systems of type \"nonlinear\" have one mode", "remove it");
+  if (const auto at = system_.find("continuous"))
+    at->error("formulas are those of the next time, x_{k+1} = f(x_k, w_k, u_k)",
+              "write the step into f, as in \"x1 + dt*(...)\"");
+  NameList all = keys;
+  all.insert(all.end(),
+             {"A", "B", "C", "D", "E", "F", "Bw", "Dv", "modes", "continuous", "disturbance"});
+  system_.expect_keys(all, "key of a nonlinear system", "");
+}
+
+void NonlinearReader::take_name(const Cursor& at, const std::string& name, Role role) {
+  if (const std::string why = formulas::why_no_name(name); !why.empty()) {
+    at.error(in_quotes(name) + " is no name for " + words[static_cast<std::size_t>(role)].noun +
+                 ": " + why,
+             "names are a letter, then letters, digits and _");
+    return;
+  }
+  const auto [first, fresh] = known_.emplace(name, role);
+  if (!fresh) {
+    at.error("repeats the name " + in_quotes(name) + " of " +
+                 words[static_cast<std::size_t>(first->second)].noun,
+             "names are unique over all lists");
+  }
+}
+
+void NonlinearReader::read_variables(Role role) {
+  const RoleWords& word = words[static_cast<std::size_t>(role)];
+  const auto at = role == Role::state
+                      ? system_.need("states", "the names of the states: [\"x1\", \"x2\"]")
+                      : system_.find(word.key);
+  if (!at || !at->expect(Kind::array, "a list of names: [\"x1\", \"x2\"]")) return;
+  if (at->size() > static_cast<std::size_t>(max_dimension) ||
+      (role == Role::state && at->size() == 0)) {
+    at->error("has " + counted(static_cast<Index>(at->size()), "name") + ", must have " +
+              (role == Role::state ? "1" : "0") + " to " + std::to_string(max_dimension));
+    return;
+  }
+  for (std::size_t i = 0; i < at->size(); ++i) {
+    const auto name = read_line(at->item(i), longest_name);
+    if (name) take_name(at->item(i), *name, role);
+    names(role).push_back(name.value_or(""));
+  }
+}
+
+void NonlinearReader::read_parameters() {
+  const auto at = system_.find("parameters");
+  if (!at || !at->expect(Kind::object, "numbers with names: {\"dt\": 0.1}")) return;
+  for (std::size_t i = 0; i < at->value().keys().size(); ++i) {
+    const std::string& name = at->value().keys()[i];
+    const Cursor item = *at->find(name);
+    take_name(item, name, Role::parameter);
+    const auto number = read_number(item);
+    written_.parameters.emplace_back(name, number.value_or(0));
+  }
+}
+
+void NonlinearReader::read_formulas(const char* key, std::size_t least, NameList& out) {
+  const auto at =
+      least > 0 ? system_.need(key, key == std::string("f") ? section_f().form : section_g().form)
+                : system_.find(key);
+  if (!at || !at->expect(Kind::array, "a list of formulas, each a text")) return;
+  if (at->size() < least || at->size() > static_cast<std::size_t>(max_dimension)) {
+    at->error("has " + counted(static_cast<Index>(at->size()), "formula") + ", must have " +
+              std::to_string(least) + " to " + std::to_string(max_dimension));
+  }
+  for (std::size_t i = 0; i < at->size(); ++i)
+    out.push_back(read_text(at->item(i), formulas::longest_formula).value_or(""));
+}
+
+NameList NonlinearReader::variables_of(const Section& section) const {
+  NameList all;
+  for (const Role role : section.variables)
+    all.insert(all.end(), names(role).begin(), names(role).end());
+  all.push_back("k");
+  return all;
+}
+
+formulas::Vocabulary NonlinearReader::vocabulary(const Section& section,
+                                                 formulas::Graph& graph) const {
+  formulas::Vocabulary made;
+  const NameList all = variables_of(section_f().key == section.key ? section_f() : section_g());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (known_.contains(all[i]) || all[i] == "k")
+      made.known.emplace(all[i], graph.variable(static_cast<Index>(i)));
+  }
+  for (const auto& [name, value] : written_.parameters)
+    made.known.emplace(name, graph.constant(value));
+  for (const auto& [name, role] : known_) {
+    const bool allowed = role == Role::parameter ||
+                         std::ranges::find(section.variables, role) != section.variables.end();
+    if (allowed) continue;
+    made.known.erase(name);
+    made.refused.emplace(name, std::string(words[static_cast<std::size_t>(role)].noun) +
+                                   " cannot stand in " + section.key);
+  }
+  if (!section.uses_time) {
+    made.known.erase("k");
+    made.refused.emplace("k", std::string("the time cannot stand in ") + section.key);
+  }
+  return made;
+}
+
+void NonlinearReader::report(const Cursor& at,
+                             const std::vector<formulas::FormulaError>& errors) const {
+  for (const formulas::FormulaError& error : errors) {
+    const std::string place =
+        error.column > 0 ? "column " + std::to_string(error.column) + ": " : "";
+    at.error(place + error.message, error.suggestion);
+  }
+}
+
+void NonlinearReader::parse(const Section& section, formulas::Graph& graph,
+                            std::vector<int>& nodes) {
+  const auto at = system_.find(section.key);
+  if (!at || !at->is(Kind::array)) return;
+  const formulas::Vocabulary names = vocabulary(section, graph);
+  for (std::size_t i = 0; i < at->size(); ++i) {
+    const Cursor item = at->item(i);
+    if (!item.is(Kind::text) || item.value().text().empty()) continue;
+    std::vector<formulas::FormulaError> errors;
+    try {
+      const auto made = formulas::parse(item.value().text(), graph, names, errors);
+      if (made) nodes.push_back(made->node());
+    } catch (const Error& error) {
+      errors.push_back({0, error.what(), ""});
+    }
+    report(item, errors);
+  }
+}
+
+std::shared_ptr<const formulas::Function> NonlinearReader::function(
+    std::vector<const Section*> sections, Role noise) {
+  const auto graph = std::make_shared<formulas::Graph>(variables_of(*sections.front()));
+  std::vector<int> nodes;
+  for (const Section* section : sections) parse(*section, *graph, nodes);
+  if (system_.problems().met() != before_) return nullptr;
+  try {
+    return std::make_shared<const formulas::Function>(graph, nodes,
+                                                      count(Role::state) + count(noise), 2);
+  } catch (const Error& error) {
+    system_.find(sections.front()->key)->error(error.what(), "use simpler formulas");
+    return nullptr;
+  }
+}
+
+void NonlinearReader::warn_of_unused(const formulas::Function& function, Role role) {
+  for (Index i = 0; i < count(role); ++i) {
+    const Index variable = count(Role::state) + i;
+    bool used = false;
+    for (Index row = 0; row < function.rows(); ++row)
+      used = used || function.depends_on(row, variable);
+    if (used) continue;
+    const RoleWords& word = words[static_cast<std::size_t>(role)];
+    warnings_.push_back(child(child(system_.pointer(), word.key), static_cast<std::size_t>(i)) +
+                        ": " + in_quotes(names(role)[static_cast<std::size_t>(i)]) +
+                        " stands in no formula");
+  }
+}
+
+void NonlinearReader::compile() {
+  const auto f = system_.find("f");
+  if (f && f->is(Kind::array) && system_.find("states") && f->size() != names(Role::state).size()) {
+    f->error("has " + counted(static_cast<Index>(f->size()), "formula") + ", must have " +
+                 std::to_string(count(Role::state)) + ", one per state",
+             "");
+  }
+  model_.f = function({&section_f()}, Role::disturbance);
+  model_.g = function({&section_g(), &section_h()}, Role::noise);
+  if (!model_.f || !model_.g) return;
+  model_.invariants = static_cast<Index>(written_.invariants.size());
+  model_.inputs = count(Role::input);
+  warn_of_unused(*model_.f, Role::disturbance);
+  warn_of_unused(*model_.g, Role::noise);
+}
+
+void NonlinearReader::read_set_of(const char* key, Role role, LineForm& out) {
+  const RoleWords& word = words[static_cast<std::size_t>(role)];
+  if (!system_.find(key) && count(role) == 0) {
+    out = make_point(Vector(0));
+    return;
+  }
+  const auto at = system_.need(key, box_form);
+  auto X = at ? read_set(*at, warnings_) : std::nullopt;
+  if (!X) return;
+  if (X->dim() != count(role)) {
+    at->error("has dimension " + std::to_string(X->dim()) + ", must have " +
+              std::to_string(count(role)) + " like " + child(system_.pointer(), word.key));
+    return;
+  }
+  out = std::move(*X);
+}
+
+void NonlinearReader::read_sets() {
+  read_set_of("X0", Role::state, part_.model.X0);
+  read_set_of("W", Role::disturbance, part_.model.W);
+  read_set_of("V", Role::noise, part_.model.V);
+  part_.model.U = make_space(count(Role::input));
+  if (system_.find("U")) read_set_of("U", Role::input, part_.model.U);
+}
+
+void NonlinearReader::read_admissible() {
+  if (system_.find("admissible")) {
+    LineForm set;
+    read_set_of("admissible", Role::state, set);
+    model_.admissible = std::move(set);
+  }
+  if (const auto at = system_.find("domain")) {
+    const auto choice = read_choice(*at, {"refused", "assumed"});
+    if (choice && *choice == "assumed") model_.undefined = formulas::Undefined::assumed;
+  }
+}
+
+/// Names of the formulas, where the study does not call them otherwise.
+void NonlinearReader::name_labels() {
+  const auto name = [](Labels::Names& labels, const NameList& names) {
+    if (labels.empty()) labels.assign(names.begin(), names.end());
+  };
+  name(part_.labels.states, names(Role::state));
+  name(part_.labels.inputs, names(Role::input));
+  name(part_.labels.disturbances, names(Role::disturbance));
+  name(part_.labels.noises, names(Role::noise));
+}
+
+SystemPart NonlinearReader::read() {
+  refuse_what_is_linear();
+  for (const Role role : {Role::state, Role::input, Role::disturbance, Role::noise})
+    read_variables(role);
+  read_parameters();
+  read_formulas("f", 1, written_.f);
+  read_formulas("g", 1, written_.g);
+  read_formulas("invariants", 0, written_.invariants);
+  compile();
+  read_sets();
+  read_admissible();
+  Sizes& sizes = part_.sizes;
+  if (system_.find("states")) sizes.states = count(Role::state);
+  sizes.inputs = count(Role::input);
+  if (!written_.g.empty()) sizes.outputs = static_cast<Index>(written_.g.size());
+  sizes.faults = 0;
+  part_.labels = read_labels(system_, {sizes.states, sizes.inputs, sizes.outputs,
+                                       count(Role::disturbance), count(Role::noise), 0});
+  name_labels();
+  if (const auto at = system_.find("nominal"))
+    part_.nominal = read_line(*at, max_name).value_or(part_.nominal);
+  part_.good = part_.modes_good = system_.problems().met() == before_;
+  if (part_.good) part_.model.nonlinear = std::make_shared<const NonlinearModel>(std::move(model_));
+  part_.formulas = std::move(written_);
+  return std::move(part_);
+}
+
+}  // namespace
+
+SystemPart read_nonlinear(const Cursor& system, std::vector<std::string>& warnings) {
+  return NonlinearReader(system, warnings).read();
+}
+
+}  // namespace cordon::json

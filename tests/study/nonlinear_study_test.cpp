@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Studies of systems by formulas: what is wrong is reported at its place, all at once; what is
+// right runs, is verified as far as it is said, and its resolved form says the same.
+#include <sstream>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "study/study_run.hpp"
+
+using Json = nlohmann::ordered_json;
+using Run = test::StudyRun;
+
+namespace {
+
+Json pendulum() {
+  return Json::parse(R"json({"cordon": 1, "title": "pendulum",
+    "system": {"type": "nonlinear", "states": ["angle", "rate"], "inputs": ["torque"],
+      "disturbances": ["push"], "noises": ["v"], "parameters": {"dt": 0.05, "g": 9.81},
+      "f": ["angle + dt*rate", "rate + dt*(-g*sin(angle) - 0.2*rate + torque + push)"],
+      "g": ["angle + v"],
+      "X0": {"type": "box", "lower": [-0.5, -1], "upper": [0.5, 1]},
+      "W": {"type": "box", "lower": [-0.1], "upper": [0.1]},
+      "V": {"type": "box", "lower": [-0.02], "upper": [0.02]}},
+    "data": {"simulate": {"steps": 40, "seed": 7, "x0": [0.4, 0.3],
+      "input": [{"type": "sine", "amplitude": 0.5, "omega": 0.1}]}},
+    "pipelines": [{"backend": "interval", "observer": "nonlinear"},
+                  {"backend": "zonotope", "observer": "nonlinear"},
+                  {"backend": "constrained_zonotope", "observer": "nonlinear"}],
+    "metrics": ["radius", "contains_truth"]})json");
+}
+
+void expect_told(const Run& run, const std::string& what) {
+  CAPTURE(run.outcome.out);
+  CHECK(run.outcome.out.find(what) != std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("a pendulum by formulas: the truth stays inside, and verification finds nothing") {
+  for (const char* rounding : {"nominal", "outward"}) {
+    Json study = pendulum();
+    for (Json& pipeline : study["pipelines"]) {
+      pipeline["name"] = pipeline["backend"];
+      pipeline["backend"] = {{"type", pipeline["backend"]}, {"rounding", rounding}};
+    }
+    const Run run(study);
+    CAPTURE(run.outcome.out);
+    REQUIRE(run.outcome.code == 0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      CHECK(run.pipeline(i)["summary"]["outside_from"].is_null());
+      CHECK(run.pipeline(i)["steps"].size() == 41);
+    }
+    const test::Outcome verified = run("verify out");
+    CAPTURE(verified.out);
+    CHECK(verified.code == 0);
+    CHECK(verified.out.find("successors by formulas are drawn") != std::string::npos);
+  }
+}
+
+TEST_CASE("a hull that was altered is refuted by its proof") {
+  const Run run(pendulum());
+  REQUIRE(run.outcome.code == 0);
+  const double lower = run.pipeline(1)["steps"][3]["hull"]["lower"][0].get<double>();
+  const std::string before = Json(lower).dump(), after = Json(lower + 0.01).dump();
+  run.exchange(before, after);
+  CHECK(run("verify out").code == 4);
+}
+
+TEST_CASE("a set that misses states which fit the outputs is refuted by draws") {
+  const Run run(pendulum());
+  REQUIRE(run.outcome.code == 0);
+  // Another output at k = 20, by more than V: what fits it lies outside of what was recorded.
+  std::istringstream lines(run.text("out/data.csv"));
+  std::string line;
+  while (std::getline(lines, line) && line.rfind("20,", 0) != 0) continue;
+  REQUIRE(line.rfind("20,", 0) == 0);
+  const std::size_t second = line.find(',', 3), third = line.find(',', second + 1);
+  const double y = std::stod(line.substr(second + 1, third - second - 1));
+  const std::string changed =
+      line.substr(0, second + 1) + std::to_string(y + 0.03) + line.substr(third);
+  run.exchange(line, changed, "out/data.csv");
+  const test::Outcome verified = run("verify out");
+  CAPTURE(verified.out);
+  CHECK(verified.code == 4);
+  CHECK(verified.out.find("k = 20") != std::string::npos);
+  CHECK(verified.out.find("is consistent with model and data") != std::string::npos);
+}
+
+TEST_CASE("with invariants nothing is drawn, which is said") {
+  Json study = pendulum();
+  study["system"]["invariants"] = {"0*angle"};
+  const Run run(study);
+  REQUIRE(run.outcome.code == 0);
+  const test::Outcome verified = run("verify out");
+  CHECK(verified.code == 5);
+  CHECK(verified.out.find("no state that is drawn meets the invariants") != std::string::npos);
+}
+
+TEST_CASE("gaps and outliers of formulas") {
+  Json study = pendulum();
+  study["data"]["simulate"]["dropouts"] = Json::parse(R"([{"probability": 0.3}])");
+  study["data"]["simulate"]["outliers"] =
+      Json::parse(R"([{"outputs": [1], "from": 5, "probability": 0.2, "shift": 2}])");
+  for (Json& pipeline : study["pipelines"]) pipeline["outliers"] = {{"most", 41}, {"in", 41}};
+  const Run run(study);
+  CAPTURE(run.outcome.out);
+  REQUIRE(run.outcome.code == 0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(run.pipeline(i)["summary"]["outside_from"].is_null());
+    CHECK(run.pipeline(i)["summary"]["outliers"]["samples"].get<int>() > 0);
+  }
+}
+
+TEST_CASE("mistakes in formulas are all told, with their columns") {
+  Json study = pendulum();
+  Json& system = study["system"];
+  system["f"] = {"angle + dt*rte", "rate + sinn(angle) + v"};
+  system["g"] = {"angle + push", "sqrt(angle"};
+  system["invariants"] = {"angle - k"};
+  system["states"] = {"angle", "rate", "sin"};
+  system["parameters"]["dt"] = "x";
+  system["A"] = Json::parse("[[1]]");
+  system["modes"] = Json::array();
+  system["domain"] = "guessed";
+  study["data"]["simulate"]["plant"] = "stirred_tank";
+  const Run run(study);
+  CHECK(run.outcome.code == 2);
+  for (const char* what :
+       {"/system/f (line", "has 2 formulas, must have 3, one per state", "/system/f/0",
+        "column 12: nothing is called rte; did you mean \"rate\"?",
+        "column 8: there is no function sinn; did you mean \"sin\"?",
+        "column 22: a noise cannot stand in f", "column 9: a disturbance cannot stand in g",
+        "the \"(\" of column 5 is not closed", "the time cannot stand in invariants",
+        "\"sin\" is no name for a state", "/system/parameters/dt", "/system/A (line",
+        "systems of type \"nonlinear\" have one mode", "unknown choice \"guessed\"",
+        "/data/simulate/plant"})
+    expect_told(run, what);
+}
+
+TEST_CASE("who takes linear models only refuses formulas, and the other way round") {
+  Json study = pendulum();
+  study["pipelines"] = Json::parse(R"([
+    {"name": "a", "backend": "zonotope", "observer": "prediction_correction"},
+    {"name": "b", "backend": "zonotope", "designer": {"type": "milp", "horizon": 3}}])");
+  const Run formulas(study);
+  CHECK(formulas.outcome.code == 2);
+  expect_told(formulas,
+              "\"prediction_correction\" takes linear models, not formulas; use \"nonlinear\"");
+  expect_told(formulas, "\"milp\" takes linear models, not formulas");
+  study["system"] = Json::parse(R"({"type": "lti", "A": [[0.5]], "C": [[1]],
+    "X0": {"type": "box", "lower": [-1], "upper": [1]},
+    "W": {"type": "box", "lower": [-1], "upper": [1]},
+    "V": {"type": "box", "lower": [-1], "upper": [1]}})");
+  study["data"]["simulate"] = {{"steps", 3}};
+  study["pipelines"] = Json::parse(R"([{"backend": "zonotope", "observer": "nonlinear"}])");
+  const Run linear(study);
+  CHECK(linear.outcome.code == 2);
+  expect_told(linear, "takes systems of type \"nonlinear\", and this one is linear");
+}
+
+TEST_CASE("where no set can be enclosed the pipeline ends with place and reason") {
+  Json study = pendulum();
+  study["system"]["f"][1] = "rate + dt*sqrt(angle - 0.3999) + push";
+  const Run run(study);
+  CHECK(run.outcome.code == 2);
+  expect_told(run, "no bounded set encloses x_2 at k = 1: sqrt(angle - 0.3999) is not defined");
+}
+
+TEST_CASE("an admissible set is assumed, and so is an invariant") {
+  Json study = pendulum();
+  study["system"]["admissible"] = {{"type", "box"}, {"lower", {0, -5}}, {"upper", {0.6, 5}}};
+  study["data"]["simulate"]["steps"] = 6;
+  const Run inside(study);
+  CHECK(inside.outcome.code == 0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(inside.pipeline(i)["steps"][0]["hull"]["lower"][0].get<double>() >= -1e-12);
+    CHECK(inside.pipeline(i)["summary"]["failed_assumption"].is_null());
+  }
+  study["data"]["simulate"]["steps"] = 60;  // it swings through zero
+  const Run outside(study);
+  CHECK(outside.outcome.code == 0);
+  CHECK(outside.pipeline()["summary"]["failed_assumption"]["what"] == "admissible_set");
+  study["system"].erase("admissible");
+  study["system"]["invariants"] = {"angle^2 + rate^2 - 1"};
+  const Run invariant(study);
+  CHECK(invariant.outcome.code == 0);
+  CHECK(invariant.pipeline()["summary"]["failed_assumption"]["what"] == "invariants");
+  CHECK(invariant.pipeline()["summary"]["failed_assumption"]["k"] == 0);
+}
+
+TEST_CASE("what is linear, written as formulas, is estimated as the linear observer does") {
+  Json study = pendulum();
+  Json& system = study["system"];
+  system["f"] = {"0.9*angle + 0.2*rate", "rate - 0.3*angle + 0.5*torque + push"};
+  const Run formulas(study);
+  REQUIRE(formulas.outcome.code == 0);
+  system = Json::parse(R"({"type": "lti", "A": [[0.9, 0.2], [-0.3, 1]], "B": [[0], [0.5]],
+    "Bw": [[0], [1]], "C": [[1, 0]]})");
+  for (const char* key : {"X0", "W", "V"}) system[key] = pendulum()["system"][key];
+  for (Json& pipeline : study["pipelines"]) pipeline["observer"] = "prediction_correction";
+  const Run linear(study);
+  REQUIRE(linear.outcome.code == 0);
+  const std::size_t constrained = 2;
+  for (std::size_t k = 0; k <= 3; ++k) {  // before reductions, which see other generators
+    CAPTURE(k);
+    for (const char* side : {"lower", "upper"}) {
+      for (std::size_t i = 0; i < 2; ++i) {
+        const auto bound = [&](const Run& run) {
+          return run.pipeline(constrained)["steps"][k]["hull"][side][i].get<double>();
+        };
+        CHECK(bound(formulas) == doctest::Approx(bound(linear)).epsilon(1e-9));
+      }
+    }
+  }
+}
+
+TEST_CASE("MAT-files hold no formulas: studies are refused, results are written without them") {
+  const Run run(pendulum());
+  const test::Outcome study = run("convert s.json s.mat");
+  CHECK(study.code == 2);
+  CHECK(study.out.find("a system by formulas has no form in MAT-files") != std::string::npos);
+  CHECK(run("convert out r.mat").code == 0);
+}
+
+TEST_CASE("the resolved study says the same") {
+  const Run run(pendulum());
+  REQUIRE(run.outcome.code == 0);
+  const Json results = run.results();
+  const Run again(results["study"]);
+  REQUIRE(again.outcome.code == 0);
+  CHECK(again.results()["study"] == results["study"]);
+  CHECK(again.pipeline(2)["steps"][40]["hull"] == run.pipeline(2)["steps"][40]["hull"]);
+}
