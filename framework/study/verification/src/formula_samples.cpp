@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formula_samples.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "cordon/core/error.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "study/data/disturbance.hpp"
@@ -16,7 +19,9 @@ using detail::RandomStream;
 
 constexpr int tries = 128;                 ///< of a round of draws, uniform and at ends in turn
 constexpr std::uint64_t most_rounds = 16;  ///< of each kind
-constexpr std::size_t enough = 8;          ///< states that are consistent
+/// A state counts as consistent if all states so near to it are, relatively: draws are rounded.
+constexpr double nearby = 1e-9;
+constexpr std::size_t enough = 8;  ///< states that are consistent
 
 /// Are all noises summands with factors that no state changes?
 bool has_plain_noises(const NonlinearModel& model) {
@@ -43,17 +48,28 @@ FormulaSamples::FormulaSamples(const Model& model, std::uint64_t seed)
 
 bool FormulaSamples::explains(const Vector& x, const Sample& now) {
   const NonlinearModel& formulas = *model_.nonlinear;
-  if (formulas.admissible && contains(*formulas.admissible, x) != Answer::yes) return false;
-  const Vector none = Vector::Zero(formulas.noises());
-  const auto shown = detail::values_at(g_, formulas.outputs(), x, none, now.u, now.k);
-  if (!shown) return false;
+  const Vector room = nearby * x.cwiseAbs();
+  const Box around{x - room, x + room};
+  if (formulas.admissible && is_subset(make_box(around), *formulas.admissible) != Answer::yes)
+    return false;
+  std::vector<Interval> variables;
+  for (Index i = 0; i < x.size(); ++i) variables.push_back({around.lower[i], around.upper[i]});
+  variables.resize(variables.size() + as_size(formulas.noises()), Interval{0, 0});
+  for (const double known : now.u) variables.push_back({known, known});
+  variables.push_back({static_cast<double>(now.k), static_cast<double>(now.k)});
+  g_.evaluate(variables);
   g_.differentiate();
   const std::vector<Index> present = present_outputs(now);
   Matrix factors = Matrix::Zero(static_cast<Index>(present.size()), formulas.noises());
-  Vector rest(factors.rows());
+  Box rest{Vector(factors.rows()), Vector(factors.rows())};
   for (Index i = 0; i < factors.rows(); ++i) {
     const Index row = present[as_size(i)];
-    rest[i] = now.y[row] - (*shown)[row];
+    if (!g_.is_enclosed(row)) return false;
+    const Interval shown = g_.value(row);
+    const double terms =
+        std::abs(now.y[row]) + std::max(std::abs(shown.lower), std::abs(shown.upper));
+    rest.lower[i] = now.y[row] - shown.upper - nearby * terms;
+    rest.upper[i] = now.y[row] - shown.lower + nearby * terms;
     for (std::size_t entry = 0; entry < g_.partials(row); ++entry) {
       const formulas::Evaluator::Partial partial = g_.partial(row, entry);
       if (partial.variable >= formulas.states())
@@ -61,7 +77,8 @@ bool FormulaSamples::explains(const Vector& x, const Sample& now) {
             0.5 * partial.value.lower + 0.5 * partial.value.upper;
     }
   }
-  return contains(affine_map(model_.V, factors, Vector::Zero(factors.rows())), rest) == Answer::yes;
+  const LineForm noise = affine_map(model_.V, factors, Vector::Zero(factors.rows()));
+  return is_subset(make_box(rest), noise) == Answer::yes;
 }
 
 std::vector<Vector> FormulaSamples::consistent(const LineForm& X, const Transition& transition) {
@@ -89,11 +106,18 @@ std::vector<Vector> FormulaSamples::consistent(const LineForm& X, const Transiti
 
 bool FormulaSamples::check(StepCheck& step, const LineForm* X, const Transition& transition) {
   std::vector<Vector> states;
-  if (X && obstacle_.empty()) states = consistent(*X, transition);
+  bool has_points = true;
+  try {
+    if (X && obstacle_.empty()) states = consistent(*X, transition);
+  } catch (const InputError&) {
+    has_points = false;
+  }
   if (!X) {
     step.skipped("the step does not follow the one before: its successors are not checked");
   } else if (!obstacle_.empty()) {
     step.skipped(obstacle_);
+  } else if (!has_points) {
+    step.skipped("no point of the set before was found");
   } else if (states.empty()) {
     step.skipped("no state that was drawn is consistent with the outputs");
   }

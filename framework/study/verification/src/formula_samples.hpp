@@ -13,9 +13,10 @@
 namespace cordon::verification {
 
 /// States that are consistent with a model by formulas and its data, found by trying: x⁺ = f(x, w,
-/// u, k) of drawn x ∈ X and w ∈ W (the middle of an outward enclosure at the point), kept where
-/// y - g(x⁺, 0) ∈ Dv V is proven, and x⁺ in the admissible set. For models without invariants,
-/// which no drawn state meets, whose g has noises with constant factors only.
+/// u, k) of drawn x ∈ X and w ∈ W (the middle of an outward enclosure at the point), kept where all
+/// states within 1e-9 of it, relatively, are in the admissible set and have y - g(·, 0) ∈ Dv V:
+/// draws are rounded. For models without invariants, which no drawn state meets, whose g has noises
+/// with constant factors only.
 class FormulaSamples {
  public:
   FormulaSamples(const Model& model, std::uint64_t seed);
