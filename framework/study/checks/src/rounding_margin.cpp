@@ -35,11 +35,11 @@ RoundingMargin::RoundingMargin(const Model& model, const LineForm& initial_set, 
       dynamic_(Matrix::Identity(model.linear.states(), model.linear.states())),
       static_(Matrix::Zero(model.linear.states(), model.linear.states())),
       mixed_(dynamic_),
-      disturbance_(model.linear.Bw.cwiseAbs() * reach_of(model.W)),
-      noise_(model.linear.Dv.cwiseAbs() * reach_of(model.V)),
       error_(Vector::Zero(model.linear.states())),
       largest_(Vector::Zero(model.states())) {
   if (!is_linear_) return;
+  disturbance_ = model_.Bw.cwiseAbs() * reach_of(model.W);
+  noise_ = model_.Dv.cwiseAbs() * reach_of(model.V);
   if (!model_.is_descriptor()) {
     take_paths();
     return;
