@@ -88,6 +88,22 @@ TEST_CASE("a set that misses states which fit the outputs is refuted by draws") 
   CHECK(verified.out.find("is consistent with model and data") != std::string::npos);
 }
 
+TEST_CASE("without noise and with outward rounding draws refute nothing") {
+  Json study = pendulum();
+  study["system"]["X0"] = Json::parse(R"({"type": "point", "center": [0.4, 0.3]})");
+  for (const char* key : {"W", "V"})
+    study["system"][key] = Json::parse(R"({"type": "point", "center": [0]})");
+  study["data"]["simulate"]["noise"] = "zero";
+  for (Json& pipeline : study["pipelines"]) {
+    pipeline["name"] = pipeline["backend"];
+    pipeline["backend"] = {{"type", pipeline["backend"]}, {"rounding", "outward"}};
+  }
+  const Run run(study);
+  CAPTURE(run.outcome.out);
+  CHECK(run.outcome.code == 0);
+  CHECK(run("verify out").code == 5);
+}
+
 TEST_CASE("with invariants nothing is drawn, which is said") {
   Json study = pendulum();
   study["system"]["invariants"] = {"0*angle"};
