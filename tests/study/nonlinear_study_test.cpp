@@ -206,6 +206,20 @@ TEST_CASE("an admissible set is assumed, and so is an invariant") {
   CHECK(invariant.pipeline()["summary"]["failed_assumption"]["k"] == 0);
 }
 
+TEST_CASE("an admissible set may leave states open, and states may stay on its boundary") {
+  Json study = pendulum();
+  study["system"]["f"] = {"0.3*angle + 0.07 + 0*push", "0.3*rate + 0.7*angle + 0*torque"};
+  study["system"]["admissible"] = {
+      {"type", "box"}, {"lower", {0.1, "-inf"}}, {"upper", {1, "inf"}}};
+  study["system"]["X0"] = Json::parse(R"({"type": "point", "center": [0.1, 0.1]})");
+  study["data"]["simulate"]["x0"] = {0.1, 0.1};
+  const Run run(study);
+  CAPTURE(run.outcome.out);
+  CHECK(run.outcome.code == 0);
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK(run.pipeline(i)["summary"]["inconsistent_from"].is_null());
+}
+
 TEST_CASE("what is linear, written as formulas, is estimated as the linear observer does") {
   Json study = pendulum();
   Json& system = study["system"];

@@ -7,6 +7,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/tolerances.hpp"
+#include "cordon/solvers/set_questions.hpp"
 
 namespace cordon::estimators {
 
@@ -69,9 +70,22 @@ NonlinearRecursion::NonlinearRecursion(const Model& model,
       V_hull_(V_->interval_hull()),
       f_variables_(as_size(model_->f->variables())),
       g_variables_(as_size(model_->g->variables())) {
-  if (!model_->admissible) return;
-  admissible_ = backend_->import(*model_->admissible);
-  admissible_hull_ = admissible_->interval_hull();
+  if (model_->admissible) take_admissible(*model_->admissible);
+}
+
+/// With nominal sets by as much wider as their proofs are: a state on its boundary is rounded.
+void NonlinearRecursion::take_admissible(const LineForm& set) {
+  admissible_hull_ = interval_hull(set);
+  Vector room = Vector::Zero(set.dim());
+  for (Index i = 0; i < set.dim() && backend_->info().rounding == Rounding::nominal; ++i) {
+    for (double* const bound : {&admissible_hull_.lower[i], &admissible_hull_.upper[i]})
+      if (std::isfinite(*bound))
+        room[i] = std::max(room[i], tolerances::proof_margin * std::abs(*bound));
+  }
+  admissible_hull_.lower -= room;
+  admissible_hull_.upper += room;
+  if (!admissible_hull_.is_bounded() && !backend_->info().unbounded) return;  // B is cut alone
+  admissible_ = backend_->sum(backend_->import(set), backend_->box({-room, room}));
 }
 
 bool NonlinearRecursion::start(Enclosure X) {
@@ -82,8 +96,9 @@ bool NonlinearRecursion::start(Enclosure X) {
 
 bool NonlinearRecursion::admit() {
   if (B_.is_empty()) return false;
-  if (!admissible_.set) return true;
-  if (!options_.boxes_only && backend_->box(B_)->is_subset_of(*admissible_) != Answer::yes)
+  if (!model_->admissible) return true;
+  if (admissible_.set && !options_.boxes_only &&
+      backend_->box(B_)->is_subset_of(*admissible_) != Answer::yes)
     set(backend_->intersection(X_, Matrix::Identity(B_.dim(), B_.dim()), admissible_));
   B_ = intersected(B_, admissible_hull_);
   if (options_.boxes_only && !B_.is_empty()) set_box();
@@ -118,6 +133,7 @@ void NonlinearRecursion::set_variables(std::vector<Interval>& variables, const B
 std::string NonlinearRecursion::row_name(Index row) const { return "x_" + std::to_string(row + 1); }
 
 bool NonlinearRecursion::predict(VectorIn u, Index k) {
+  if (B_.is_empty()) return false;
   const Index n = model_->states();
   set_variables(f_variables_, W_hull_, u, k);
   f_.set_box(f_variables_);

@@ -59,6 +59,7 @@ class NonlinearRecursion {
   bool contract(const Sample& now);
   bool contract_row(Index row, double value, double room);
   bool cut_by_box();
+  void take_admissible(const LineForm& set);
   bool admit();  ///< cuts by the admissible set
   bool correct_rows(const Sample& now, const std::vector<Index>& rows);
   void set(Enclosure X);
@@ -73,7 +74,8 @@ class NonlinearRecursion {
   std::shared_ptr<const SetBackend> backend_;
   NonlinearOptions options_;
   formulas::BoxEnclosure f_, g_;
-  Enclosure W_, V_, X_, admissible_;  ///< the last one perhaps none
+  Enclosure W_, V_, X_,
+      admissible_;  ///< the last one: none, or unbounded and no set of the backend
   Box W_hull_, V_hull_, admissible_hull_, B_;
   Box hull_;  ///< of X
   std::vector<Interval> f_variables_, g_variables_, before_row_;

@@ -228,7 +228,9 @@ void NonlinearReader::parse(const Section& section, formulas::Graph& graph,
   const formulas::Vocabulary names = vocabulary(section, graph);
   for (std::size_t i = 0; i < at->size(); ++i) {
     const Cursor item = at->item(i);
-    if (!item.is(Kind::text) || item.value().text().empty()) continue;
+    if (!item.is(Kind::text)) continue;
+    const std::size_t length = item.value().text().size();
+    if (length == 0 || length > formulas::longest_formula) continue;  // was reported
     std::vector<formulas::FormulaError> errors;
     try {
       const auto made = formulas::parse(item.value().text(), graph, names, errors);
