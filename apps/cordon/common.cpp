@@ -40,6 +40,7 @@ Exit exit_for(Errc code) noexcept {
     case Errc::not_finite:
     case Errc::invalid:
     case Errc::unsupported:
+    case Errc::not_enclosed:
     case Errc::io:
       return Exit::invalid;
     case Errc::solver:

@@ -115,6 +115,10 @@ std::string units_text(const RunOutcome& outcome, const Labels& labels) {
       fmt::join(titles, ", "), titles.size() == 1 ? "s" : "", fmt::join(units, ", "));
 }
 
+std::string times_begun(std::int64_t times) {
+  return times == 1 ? "begun once" : fmt::format("begun {} times", times);
+}
+
 std::string contradictions_text(const Study& study, const RunOutcome& outcome, const Paint& paint) {
   const Labels& labels = study.labels;
   std::string text;
@@ -129,8 +133,12 @@ std::string contradictions_text(const Study& study, const RunOutcome& outcome, c
     if (found.restarts > 0) {
       text += fmt::format(
           "{}: {} anew from the restart set: what follows rests on the state being in it\n",
-          pipeline.name,
-          found.restarts == 1 ? "begun once" : fmt::format("begun {} times", found.restarts));
+          pipeline.name, times_begun(found.restarts));
+    }
+    if (found.not_enclosed > 0) {
+      text += fmt::format("{}: {} anew from the admissible set, at {} first: {}\n", pipeline.name,
+                          times_begun(found.not_enclosed),
+                          time_text(labels, found.not_enclosed_from), found.why_not_enclosed);
     }
     if (found.outliers > 0) text += outliers_text(labels, pipeline.name, found);
   }

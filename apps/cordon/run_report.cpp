@@ -69,7 +69,7 @@ std::string consistency(const Labels& labels, const PipelineOutcome& pipeline) {
   if (found.inconsistent_from >= 0)
     return "empty from " + time_text(labels, found.inconsistent_from);
   if (found.undecided > 0) return fmt::format("undecided at {} steps", found.undecided);
-  return "consistent";
+  return found.not_enclosed > 0 ? "begun anew" : "consistent";
 }
 
 struct Column {

@@ -109,6 +109,26 @@ TEST_CASE("excess widths over smaller and smaller boxes: orders 1, 2 and 2, as p
   }
 }
 
+TEST_CASE("differences of convex functions: no wider, and exact where a row is convex") {
+  const auto function =
+      compiled({"x1", "x2"}, {predator_prey[0], "x1^2 + 1e-12*x2^2", "x1*x2", "exp(-x1)*1e4"}, 2);
+  BoxEnclosure first(function, 2, AffineForm::first_order, Rounding::nominal),
+      differences(function, 2, AffineForm::convex_differences, Rounding::nominal);
+  const std::vector<Interval> box = {{4, 6}, {-1e6, 1e6}};
+  first.set_box(box);
+  differences.set_box(box);
+  Eigen::RowVectorXd slope(2);
+  for (Index row = 0; row < 4; ++row) {
+    const double wide = first.affine(row, slope).radius;
+    CHECK(differences.affine(row, slope).radius <= wide);
+  }
+  // 1e4 (exp(-x) - e⁻⁵ (1 - (x - 5))) over [4, 6]: from 0 to what it is at 4.
+  const BoxEnclosure::Affine convex = differences.affine(3, slope);
+  const double most = 1e4 * (std::exp(-4) - 2 * std::exp(-5));
+  CHECK(2 * convex.radius == doctest::Approx(most));
+  CHECK(2 * first.affine(3, slope).radius > 1.8 * most);
+}
+
 TEST_CASE("linear formulas are enclosed by themselves") {
   const auto function = compiled({"x1", "x2", "w"}, {"2*x1 - x2/4 + w + 1"}, 3);
   for (const AffineForm form : {AffineForm::mean_value, AffineForm::first_order}) {
@@ -132,11 +152,12 @@ TEST_CASE("rows without bounded derivatives fall back, rows without a value say 
   BoxEnclosure::Affine affine = first.affine(0, slope);
   CHECK(slope == Eigen::RowVector2d(0, 1));
   CHECK(affine.radius == doctest::Approx(1.5 * 2 + 0.25));
-  // The slope of the root is not bounded where it begins: a box.
+  // The derivative of the root is not bounded where it begins: chords from (0, √2) to both ends.
   affine = first.affine(1, slope);
-  CHECK(slope.isZero());
-  CHECK(affine.value == doctest::Approx(1));
-  CHECK(affine.radius == doctest::Approx(1));
+  const double low = (2 - std::sqrt(2)) / 2, high = std::sqrt(2) / 2;
+  CHECK(slope[0] == doctest::Approx((low + high) / 2));
+  CHECK(affine.value == doctest::Approx(std::sqrt(2)));
+  CHECK(affine.radius == doctest::Approx((high - low) / 2 * 2));
   CHECK(first.affine(2, slope).radius == infinity);
   CHECK(first.why_not_enclosed(2) == "log(x) is not defined for every x in [-2, 2]");
   CHECK(first.why_not_enclosed(3) == "");
@@ -146,6 +167,72 @@ TEST_CASE("rows without bounded derivatives fall back, rows without a value say 
   CHECK(affine.radius == 2);
 }
 
+TEST_CASE("random formulas: slopes hold for all pairs of a point and the centre") {
+  Random random(12);
+  int held = 0;
+  for (int i = 0; i < repetitions(3000); ++i) {
+    auto graph = std::make_shared<Graph>(variable_names(3));
+    const int row = random_formula(*graph, random, 1 + among(random, 8));
+    const auto function = std::make_shared<const Function>(graph, std::vector<int>{row}, 3, 1);
+    Evaluator evaluator(function, i % 20 ? Rounding::nominal : Rounding::outward);
+    std::vector<Interval> box, center;
+    for (int a = 0; a < 3; ++a) {
+      const double lower = among(random, 4) ? uniform(random, -1.5, 2) : 0.0;
+      box.push_back({lower, lower + std::exp(uniform(random, -8, 0.5))});
+      const double at = uniform(random, box.back().lower, box.back().upper);
+      center.push_back({at, at});
+    }
+    evaluator.evaluate(box);
+    if (!evaluator.is_enclosed(0)) continue;
+    evaluator.differentiate();
+    std::vector<Interval> derivatives;
+    for (std::size_t e = 0; e < evaluator.partials(0); ++e)
+      derivatives.push_back(evaluator.partial(0, e).value);
+    evaluator.take_slopes(center);
+    CAPTURE(graph->to_string(row, 500));
+    std::vector<double> h;
+    for (const Interval side : center) h.push_back(side.lower);
+    const double place = uniform(random, 0, 1);
+    const Digits at_center = value_of(*graph, row, digits(h), place);
+    for (int sample = 0; sample < 6; ++sample) {
+      std::vector<double> x;
+      for (const Interval side : box)
+        x.push_back(sample < 3         ? uniform(random, side.lower, side.upper)
+                    : among(random, 2) ? side.lower
+                                       : side.upper);
+      const Digits difference = value_of(*graph, row, digits(x), place) - at_center;
+      if (!isfinite(difference)) continue;  // not defined there
+      Digits least = 0, most = 0;
+      for (std::size_t e = 0; e < evaluator.partials(0); ++e) {
+        const Evaluator::Partial partial = evaluator.partial(0, e);
+        const auto v = static_cast<std::size_t>(partial.variable);
+        const Digits d = Digits(x[v]) - Digits(h[v]);
+        if (d == 0) continue;
+        const Digits a = Digits(partial.value.lower) * d, b = Digits(partial.value.upper) * d;
+        least += a < b ? a : b;
+        most += a < b ? b : a;
+      }
+      if (!isfinite(least) || !isfinite(most)) continue;
+      REQUIRE(least <= difference);
+      REQUIRE(difference <= most);
+      ++held;
+    }
+  }
+  CHECK(held > 6000);
+}
+
+TEST_CASE("slopes of squares are half as wide as derivatives, those of a root at 0 bounded") {
+  const auto function = compiled({"x", "y"}, {"x^2", "sqrt(y)", "x*x*y", "y^1.5", "y^0.25"}, 2);
+  Evaluator evaluator(function, Rounding::outward);
+  evaluator.evaluate(std::vector<Interval>{{1, 3}, {0, 4}});
+  evaluator.take_slopes(std::vector<Interval>{{2, 2}, {1, 1}});
+  CHECK(evaluator.partial(0, 0).value == Interval{3, 5});
+  CHECK(evaluator.partial(1, 0).value.lower == doctest::Approx(1.0 / 3));
+  CHECK(evaluator.partial(1, 0).value.upper == 1);
+  CHECK(evaluator.partial(4, 0).value.upper == doctest::Approx(1));
+  CHECK(evaluator.partial(4, 0).value.lower == doctest::Approx((std::sqrt(std::sqrt(4)) - 1) / 3));
+}
+
 TEST_CASE("random formulas: points of the box keep to range and affine form") {
   Random random(11);
   int enclosed = 0;
@@ -153,7 +240,7 @@ TEST_CASE("random formulas: points of the box keep to range and affine form") {
     auto graph = std::make_shared<Graph>(variable_names(4));
     const int row = random_formula(*graph, random, 2 + among(random, 10));
     const auto function = std::make_shared<const Function>(graph, std::vector<int>{row}, 3, 2);
-    const AffineForm form = among(random, 2) ? AffineForm::mean_value : AffineForm::first_order;
+    const AffineForm form = static_cast<AffineForm>(among(random, 3));
     BoxEnclosure enclosure(function, among(random, 4), form,
                            i % 20 ? Rounding::nominal : Rounding::outward,
                            among(random, 3) ? Undefined::refused : Undefined::assumed);

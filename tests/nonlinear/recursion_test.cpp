@@ -32,6 +32,12 @@ NonlinearOptions options(AffineForm form, bool contracts, bool carries_box, bool
   return made;
 }
 
+NonlinearOptions relaxation(bool contracts) {
+  NonlinearOptions made = options(AffineForm::first_order, contracts, contracts, false);
+  made.relaxes = true;
+  return made;
+}
+
 NonlinearOptions boxes() {
   NonlinearOptions made;
   made.form = AffineForm::mean_value;
@@ -39,8 +45,15 @@ NonlinearOptions boxes() {
   return made;
 }
 
+NonlinearOptions natural() {
+  NonlinearOptions made = boxes();
+  made.natural_only = true;
+  return made;
+}
+
 const std::vector<Method>& methods() {
   static const std::vector<Method> all = {
+      {"interval_natural", "interval", natural()},
       {"interval", "interval", boxes()},
       {"zonotope_mean_value", "zonotope", options(AffineForm::mean_value, false, false, true)},
       {"zonotope_first_order_box", "zonotope", options(AffineForm::first_order, true, true, true)},
@@ -52,8 +65,23 @@ const std::vector<Method>& methods() {
        options(AffineForm::mean_value, true, true, false)},
       {"cz_first_order_hc4", "constrained_zonotope",
        options(AffineForm::first_order, true, true, false)},
+      {"cz_dc_scaled", "constrained_zonotope",
+       options(AffineForm::convex_differences, false, false, false)},
+      {"cz_relaxation", "constrained_zonotope", relaxation(false)},
+      {"cz_relaxation_hc4", "constrained_zonotope", relaxation(true)},
   };
   return all;
+}
+
+/// By how much of a width hulls may exceed the reference on one side. Strips that do not cut a
+/// zonotope leave it as it is here, and change it there: one of 110 hulls is wider by 0.04 %.
+/// Differences of convex functions are intersected with the first order here, which moves centres:
+/// two sides of 220 lie further out (heading, k = 1 and 6), the other sides of these hulls by more
+/// further in. Relaxations bound curves that turn by halving: one side of 440 lies further out.
+double share_of(const std::string& method) {
+  if (method == "zonotope_first_order_box") return 5e-4;
+  if (method == "cz_dc_scaled") return 0.016;
+  return method.starts_with("cz_relaxation") ? 2e-4 : 0.0;
 }
 
 /// `inner` and no more than `outer`, but for the digits that the reference has and this share of
@@ -83,9 +111,7 @@ TEST_CASE("hulls of five examples: no wider than the reference, never within wha
       const bool has_strips = std::string(method.backend) == "zonotope";
       const auto backend = examples::registry().make<BackendEntry>(
           method.backend, has_strips ? Params().set("strip", "segment") : Params());
-      // Strips that do not cut a zonotope leave it as it is here, and change it there: one of the
-      // 110 hulls of this method is wider by 0.04 %.
-      const double share = std::string(method.reference) == "zonotope_first_order_box" ? 5e-4 : 0.0;
+      const double share = share_of(method.reference);
       NonlinearRecursion recursion(model, backend, method.options);
       recursion.start(backend->import(model.X0));
       for (std::size_t k = 0; k < example["y"].size(); ++k) {
@@ -169,7 +195,7 @@ int follow(const Model& model, const Json& inputs, const Method& method, std::ui
     try {
       recursion.predict(u, k);
     } catch (const Error& error) {
-      CHECK(error.code() == Errc::unsupported);
+      CHECK(error.code() == Errc::not_enclosed);
       return static_cast<int>(k) + 1;
     }
     trajectory.advance(u, k);

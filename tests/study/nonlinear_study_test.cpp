@@ -184,6 +184,39 @@ TEST_CASE("where no set can be enclosed the pipeline ends with place and reason"
   expect_told(run, "no bounded set encloses x_2 at k = 1: sqrt(angle - 0.3999) is not defined");
 }
 
+TEST_CASE("where no set can be enclosed an observer may begin anew from the admissible set") {
+  Json study = pendulum();
+  study["system"]["f"][1] = "rate + dt*(-g*sin(angle) - 0.2*rate + sqrt(angle + 0.6) + push)";
+  study["data"]["simulate"]["dropouts"] = {{{"from", 3}, {"to", 25}}};
+  const Run stopped(study);
+  CHECK(stopped.outcome.code == 2);
+  expect_told(stopped, "sqrt(angle + 0.6) is not defined for every");
+  study["system"]["admissible"] = {{"type", "box"}, {"lower", {-1, -5}}, {"upper", {1, 5}}};
+  for (Json& pipeline : study["pipelines"]) pipeline["on_not_enclosed"] = "restart";
+  const Run run(study);
+  CAPTURE(run.outcome.out);
+  CHECK(run.outcome.code == 0);
+  expect_told(run, "anew from the admissible set, at k = ");
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Json summary = run.pipeline(i)["summary"];
+    CHECK(summary["steps"] == 41);
+    CHECK(summary["inconsistent_from"].is_null());
+    CHECK(summary["failed_assumption"].is_null());
+    CHECK(summary.contains("not_enclosed") == (i == 0));
+  }
+  CHECK(run.pipeline()["summary"]["not_enclosed"]["times"] > 1);
+  CHECK(run.pipeline()["summary"]["not_enclosed"]["from"] == 13);
+  const test::Outcome verified = run("verify out");
+  CAPTURE(verified.out);
+  CHECK(verified.code == 0);
+
+  study["system"]["admissible"]["lower"][1] = "-inf";
+  study["system"]["admissible"]["upper"][1] = "inf";
+  expect_told(Run(study), "needs a bounded set that holds the state at all times");
+  study["system"].erase("admissible");
+  expect_told(Run(study), "needs a bounded set that holds the state at all times");
+}
+
 TEST_CASE("an admissible set is assumed, and so is an invariant") {
   Json study = pendulum();
   study["system"]["admissible"] = {{"type", "box"}, {"lower", {0, -5}}, {"upper", {0.6, 5}}};

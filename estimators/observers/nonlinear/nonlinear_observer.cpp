@@ -21,8 +21,12 @@ NonlinearOptions options_from(const Params& params, const BackendInfo& backend) 
   NonlinearOptions options;
   // Cuts by the box make sets wider where intersections are enclosed.
   options.row_by_row = !backend.intersections;
-  options.boxes_only = params.text("method") == "interval";
-  if (params.text("method") == "mean_value") options.form = formulas::AffineForm::mean_value;
+  const std::string& method = params.text("method");
+  options.natural_only = method == "natural";
+  options.boxes_only = options.natural_only || method == "interval";
+  options.relaxes = method == "relaxation";
+  if (method == "mean_value") options.form = formulas::AffineForm::mean_value;
+  if (method == "dc") options.form = formulas::AffineForm::convex_differences;
   options.contracts = params.flag("contraction");
   options.carries_box = params.flag("box");
   options.budget = budget_from(params);
@@ -112,6 +116,19 @@ class NonlinearObserver final : public Observer {
   Box V_hull_;
 };
 
+/// What formulas are made of, for people.
+std::string language() {
+  std::string text =
+      "Formulas: + - * / ^ ( ), decimal numbers, pi, k (the number of the step), names of the "
+      "study, and\n";
+  for (const formulas::FunctionName& function : formulas::function_names()) {
+    const std::string domain = function.domain;
+    text += std::string("  ") + function.name + (function.arguments == 2 ? "(x, y)" : "(x)") +
+            (domain.empty() ? "" : ", " + domain) + "\n";
+  }
+  return text + "docs/nonlinear.md describes systems, methods and assumptions.\n";
+}
+
 std::vector<Diagnostic> check_nonlinear(const ObserverContext& context, const Params& params) {
   if (context.model.is_linear()) {
     return {{"/type", "\"nonlinear\" takes systems of type \"nonlinear\", and this one is linear",
@@ -119,6 +136,11 @@ std::vector<Diagnostic> check_nonlinear(const ObserverContext& context, const Pa
   }
   std::vector<Diagnostic> problems = check_common(context, params);
   if (!problems.empty()) return problems;
+  if (params.text("method") == "relaxation" && !context.backend->info().intersections)
+    problems.push_back({"/method",
+                        "\"relaxation\" needs sets with exact intersections, and \"" +
+                            context.backend->info().name + "\" encloses them",
+                        "use the backend \"constrained_zonotope\", or another method"});
   check_bounded_start(context, params, problems);
   check_noises(context, problems);
   return problems;
@@ -128,17 +150,21 @@ std::vector<Diagnostic> check_nonlinear(const ObserverContext& context, const Pa
 
 void register_nonlinear(Registrar& registrar) {
   ParamSchema schema = common_parameters();
-  schema.choice("method",
-                "the enclosure of f and g: boxes alone (interval), or a set of the "
-                "backend by the mean value or by the first order with bounded second derivatives",
-                {"interval", "mean_value", "first_order"}, "first_order");
+  schema.choice(
+      "method",
+      "the enclosure of f and g: boxes alone, by natural extensions (natural) or the best "
+      "range (interval); or a set of the backend by the mean value, by the first order "
+      "with bounded second derivatives, the same bounded by differences of convex "
+      "functions as well (dc), or by linear relaxations (exact intersections only)",
+      {"natural", "interval", "mean_value", "first_order", "dc", "relaxation"}, "first_order");
   schema.flag("contraction", "contract a box by the outputs and invariants (HC4)", true);
   schema.flag("box", "carry a box beside the set: the estimate is their intersection", true);
   registrar.add(ObserverEntry{
       {"nonlinear",
        "prediction and correction for formulas, enclosed by ranges and derivatives over boxes; any "
        "backend",
-       "Kuhn1998; Combastel2005; Rego2020a; Benhamou1999", std::move(schema)},
+       "Kuhn1998; Combastel2005; Rego2020a; Rego2025b; Benhamou1999", std::move(schema),
+       language()},
       check_nonlinear,
       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
         return std::make_unique<NonlinearObserver>(context, params);

@@ -48,13 +48,13 @@ AffineRows affine_rows(const BoxEnclosure& enclosure, const std::vector<Index>& 
   return made;
 }
 
-std::vector<Index> all(Index count) {
+}  // namespace
+
+std::vector<Index> all_rows(Index count) {
   std::vector<Index> rows(as_size(count));
   std::iota(rows.begin(), rows.end(), Index{0});
   return rows;
 }
-
-}  // namespace
 
 NonlinearRecursion::NonlinearRecursion(const Model& model,
                                        std::shared_ptr<const SetBackend> backend,
@@ -89,6 +89,7 @@ void NonlinearRecursion::take_admissible(const LineForm& set) {
 }
 
 bool NonlinearRecursion::start(Enclosure X) {
+  before_.reset();
   set(std::move(X));
   B_ = hull_;
   return admit();
@@ -135,14 +136,17 @@ std::string NonlinearRecursion::row_name(Index row) const { return "x_" + std::t
 bool NonlinearRecursion::predict(VectorIn u, Index k) {
   if (B_.is_empty()) return false;
   const Index n = model_->states();
+  if (!B_.is_bounded())
+    throw Error(Errc::not_enclosed, "the estimate at k = " + std::to_string(k) +
+                                        " is unbounded, and formulas are enclosed over boxes");
   set_variables(f_variables_, W_hull_, u, k);
   f_.set_box(f_variables_);
   Box range = Box::space(n);
   for (Index row = 0; row < n; ++row) {
     if (!f_.is_enclosed(row))
-      throw Error(Errc::unsupported, "no bounded set encloses " + row_name(row) + " at k = " +
-                                         std::to_string(k + 1) + ": " + f_.why_not_enclosed(row));
-    const Interval values = f_.range(row);
+      throw Error(Errc::not_enclosed, "no bounded set encloses " + row_name(row) + " at k = " +
+                                          std::to_string(k + 1) + ": " + f_.why_not_enclosed(row));
+    const Interval values = options_.natural_only ? f_.natural(row) : f_.range(row);
     const double near = room(f_.rounding_error(row));
     range.lower[row] = directed::plus(values.lower, -near).lower;
     range.upper[row] = directed::plus(values.upper, near).upper;
@@ -152,7 +156,12 @@ bool NonlinearRecursion::predict(VectorIn u, Index k) {
     set_box();
     return admit();
   }
-  AffineRows form = affine_rows(f_, all(n));
+  if (options_.relaxes) {
+    before_ = Before{X_, B_, u, k};
+    B_ = model_->admissible ? intersected(range, admissible_hull_) : range;
+    return !B_.is_empty();
+  }
+  AffineRows form = affine_rows(f_, all_rows(n));
   for (Index row = 0; row < n; ++row)
     form.radius[row] = directed::plus(form.radius[row], room(f_.rounding_error(row))).upper;
   const Enclosure rest = backend_->box({-form.radius, form.radius});
@@ -184,9 +193,14 @@ bool NonlinearRecursion::contract_row(Index row, double value, double room) {
   return true;
 }
 
-bool NonlinearRecursion::contract(const Sample& now) {
+std::vector<Index> NonlinearRecursion::rows_of(const Sample& now) const {
   std::vector<Index> rows = present_outputs(now);
   for (Index i = 0; i < model_->invariants; ++i) rows.push_back(model_->outputs() + i);
+  return rows;
+}
+
+bool NonlinearRecursion::contract(const Sample& now) {
+  const std::vector<Index> rows = rows_of(now);
   set_variables(g_variables_, V_hull_, now.u, now.k);
   g_.evaluator().evaluate(g_variables_);
   g_.evaluator().bound_rounding();
@@ -222,11 +236,13 @@ void NonlinearRecursion::set_box() {
   hull_ = B_;
 }
 
-/// X ∩ {x : x_i ∈ B_i} for the coordinates in which B is narrower.
+/// X ∩ {x : x_i ∈ B_i} for the coordinates in which B is bounded and narrower.
 bool NonlinearRecursion::cut_by_box() {
   std::vector<Index> narrower;
   for (Index i = 0; i < B_.dim(); ++i)
-    if (B_.lower[i] > hull_.lower[i] || B_.upper[i] < hull_.upper[i]) narrower.push_back(i);
+    if ((B_.lower[i] > hull_.lower[i] || B_.upper[i] < hull_.upper[i]) &&
+        std::isfinite(B_.lower[i]) && std::isfinite(B_.upper[i]))
+      narrower.push_back(i);
   if (narrower.empty()) return true;
   const auto count = static_cast<Index>(narrower.size());
   Matrix rows = Matrix::Zero(count, B_.dim());
@@ -242,6 +258,7 @@ bool NonlinearRecursion::cut_by_box() {
 }
 
 bool NonlinearRecursion::correct_rows(const Sample& now, const std::vector<Index>& rows) {
+  if (!B_.is_bounded()) return true;  // no affine form
   set_variables(g_variables_, V_hull_, now.u, now.k);
   g_.set_box(g_variables_);
   std::vector<Index> usable;
@@ -272,9 +289,9 @@ bool NonlinearRecursion::correct(const Sample& now) {
     set_box();
     return true;
   }
+  if (options_.relaxes) return correct_relaxed(now);
   if (options_.contracts && !options_.row_by_row && !cut_by_box()) return false;
-  std::vector<Index> rows = present_outputs(now);
-  for (Index i = 0; i < model_->invariants; ++i) rows.push_back(model_->outputs() + i);
+  const std::vector<Index> rows = rows_of(now);
   if (!options_.row_by_row) return correct_rows(now, rows);
   return std::ranges::all_of(rows, [&](Index row) { return correct_rows(now, {row}); });
 }

@@ -13,26 +13,36 @@
 // [Kuhn1998] mean value, [Combastel2005] first order, [Benhamou1999] contraction.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cordon/formulas/box_enclosure.hpp"
+#include "cordon/formulas/relaxation.hpp"
 #include "cordon/interfaces/backend.hpp"
 #include "cordon/interfaces/model.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
 
 namespace cordon::estimators {
 
+/// 0 … count - 1
+std::vector<Index> all_rows(Index count);
+
 struct NonlinearOptions {
   formulas::AffineForm form = formulas::AffineForm::first_order;
   /// The estimate is a box alone: ranges, and no affine forms.
   bool boxes_only = false;
+  bool natural_only = false;  ///< of ranges the natural extension
+  /// Prediction and correction in one program of linear relaxations; sets with exact intersections.
+  bool relaxes = false;
   bool contracts = true;    ///< by HC4, beside the affine forms
   bool carries_box = true;  ///< else B is the hull of X at each step
   bool row_by_row = false;  ///< corrections renew the affine form after each row
   int most_sweeps = 20;     ///< of contraction over all rows
   Budget budget = {};
 };
+
+class RelaxedStep;
 
 class NonlinearRecursion {
  public:
@@ -42,7 +52,7 @@ class NonlinearRecursion {
 
   /// The set that the state is in, cut by the admissible set. False: no state is left, as below.
   bool start(Enclosure X);
-  /// To the next time. Throws Errc::unsupported where f has no bounded enclosure, with the row and
+  /// To the next time. Throws Errc::not_enclosed where f has no bounded enclosure, with the row and
   /// the reason.
   bool predict(VectorIn u, Index k);
   /// With the outputs of time k that are there. False: no state is left, which is proven.
@@ -66,6 +76,12 @@ class NonlinearRecursion {
   void set_box();     ///< X = B
   bool narrow_box();  ///< B ∩ hull X; false: empty
   double target(Index row, const Sample& now) const;
+  /// By relaxations: the estimate from X_{k-1}, if there is one, or else from X.
+  bool correct_relaxed(const Sample& now);
+  /// x_k as affine expressions of the step's variables.
+  std::vector<formulas::AffineExpression> successors(RelaxedStep& step);
+  /// The rows of g and h of which values are there.
+  std::vector<Index> rows_of(const Sample& now) const;
   /// For a rounding error, and that of a value beside it.
   double room(double error, double value = 0) const;
   std::string row_name(Index row) const;
@@ -78,6 +94,14 @@ class NonlinearRecursion {
       admissible_;  ///< the last one: none, or unbounded and no set of the backend
   Box W_hull_, V_hull_, admissible_hull_, B_;
   Box hull_;  ///< of X
+  /// X_{k-1} where X_k is still to be made: relaxations predict and correct at once.
+  struct Before {
+    Enclosure X;
+    Box B;
+    Vector u;
+    Index k;
+  };
+  std::optional<Before> before_;
   std::vector<Interval> f_variables_, g_variables_, before_row_;
 };
 

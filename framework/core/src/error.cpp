@@ -72,6 +72,8 @@ std::string_view to_string(Errc code) noexcept {
       return "invalid";
     case Errc::unsupported:
       return "unsupported";
+    case Errc::not_enclosed:
+      return "not_enclosed";
     case Errc::solver:
       return "solver";
     case Errc::time_limit:

@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "cordon/core/error.hpp"
+#include "operations.hpp"
 
 namespace cordon::formulas {
 
 namespace {
-
-double middle(Interval x) { return 0.5 * x.lower + 0.5 * x.upper; }
 
 /// The distance from `center` to both ends, rounded up.
 double reach(Interval x, double center) {
@@ -43,8 +42,11 @@ BoxEnclosure::BoxEnclosure(std::shared_ptr<const Function> function, Index state
       at_center_(natural_),
       errors_(natural_.size(), 0.0),
       reasons_(natural_.size()),
-      remainders_(natural_.size(), Interval{0, 0}) {
-  if (this->function().order() < (form == AffineForm::first_order ? 2 : 1) || states < 0 ||
+      has_slopes_(natural_.size(), false),
+      remainders_(natural_.size(), Interval{0, 0}),
+      bent_(natural_.size()),
+      curvatures_(natural_.size()) {
+  if (this->function().order() < (has_second_derivatives() ? 2 : 1) || states < 0 ||
       states > center_.size())
     throw Error(Errc::dimension, "an enclosure needs the derivatives of its form");
   std::size_t count = 0;
@@ -54,6 +56,9 @@ BoxEnclosure::BoxEnclosure(std::shared_ptr<const Function> function, Index state
   }
   gradient_.assign(count, Interval{0, 0});
   gradient_at_center_ = gradient_;
+  for (Index row = 0; row < this->function().rows() && form == AffineForm::convex_differences;
+       ++row)
+    bent_[as_size(row)] = bent_variables(row);
 }
 
 void BoxEnclosure::set_box(std::span<const Interval> variables) {
@@ -81,12 +86,15 @@ void BoxEnclosure::take_derivatives(std::span<const Interval> variables) {
   for (Index row = 0; row < function().rows(); ++row)
     for (std::size_t e = 0; e < evaluator_.partials(row); ++e)
       gradient_[first_entry(row) + e] = evaluator_.partial(row, e).value;
-  if (form_ == AffineForm::first_order) {
+  if (has_second_derivatives()) {
     evaluator_.differentiate_twice();
-    for (Index row = 0; row < function().rows(); ++row) remainders_[as_size(row)] = remainder(row);
-    return;
+    for (Index row = 0; row < function().rows(); ++row) {
+      remainders_[as_size(row)] = remainder(row);
+      if (is_bounded_by_vertices(row)) take_curvature(row);
+    }
   }
-  if (!w_depends_on_x_) return;
+  take_slopes(variables);
+  if (has_second_derivatives() || !w_depends_on_x_) return;
   std::copy(variables.begin(), variables.end(), point_.begin());
   for (Index i = 0; i < states_; ++i) point_[as_size(i)] = {center_[i], center_[i]};
   evaluator_.evaluate(point_);
@@ -94,22 +102,49 @@ void BoxEnclosure::take_derivatives(std::span<const Interval> variables) {
   for (Index row = 0; row < function().rows(); ++row) {
     for (std::size_t e = 0; e < evaluator_.partials(row); ++e) {
       const Evaluator::Partial partial = evaluator_.partial(row, e);
-      if (partial.variable >= states_) gradient_[first_entry(row) + e] = partial.value;
+      if (partial.variable >= states_ && !has_slopes_[as_size(row)])
+        gradient_[first_entry(row) + e] = partial.value;
     }
   }
 }
 
-void BoxEnclosure::take_point(std::span<const Interval> variables) {
+/// In place of derivatives that are not bounded.
+void BoxEnclosure::take_slopes(std::span<const Interval> variables) {
+  bool any = false;
+  for (Index row = 0; row < function().rows(); ++row) {
+    const Form form{{0, 0}, gradient_.data() + first_entry(row)};
+    has_slopes_[as_size(row)] = is_enclosed(row) && !is_bounded(row, form);
+    any = any || has_slopes_[as_size(row)];
+  }
+  if (!any) return;
+  set_center(variables);
+  evaluator_.take_slopes(point_);
+  for (Index row = 0; row < function().rows(); ++row)
+    for (std::size_t e = 0; has_slopes_[as_size(row)] && e < evaluator_.partials(row); ++e)
+      gradient_[first_entry(row) + e] = evaluator_.partial(row, e).value;
+}
+
+void BoxEnclosure::set_center(std::span<const Interval> variables) {
   std::copy(variables.begin(), variables.end(), point_.begin());
   for (Index i = 0; i < center_.size(); ++i) point_[as_size(i)] = {center_[i], center_[i]};
+}
+
+void BoxEnclosure::take_point(std::span<const Interval> variables) {
+  set_center(variables);
   evaluator_.evaluate(point_);
-  if (form_ == AffineForm::first_order) evaluator_.differentiate();
+  if (has_second_derivatives()) evaluator_.differentiate();
   for (Index row = 0; row < function().rows(); ++row) {
     at_center_[as_size(row)] = evaluator_.is_enclosed(row) ? evaluator_.value(row) : real_line;
-    if (form_ != AffineForm::first_order) continue;
+    if (!has_second_derivatives()) continue;
     for (std::size_t e = 0; e < evaluator_.partials(row); ++e)
       gradient_at_center_[first_entry(row) + e] = evaluator_.partial(row, e).value;
   }
+  for (Index row = 0; row < function().rows(); ++row)
+    if (is_bounded_by_vertices(row)) take_vertices(variables, row);
+}
+
+bool BoxEnclosure::is_bounded_by_vertices(Index row) const {
+  return !bent_[as_size(row)].empty() && is_enclosed(row) && remainders_[as_size(row)].is_finite();
 }
 
 std::string BoxEnclosure::why_not_enclosed(Index row) const {
@@ -143,8 +178,7 @@ std::optional<BoxEnclosure::Form> BoxEnclosure::mean_value(Index row) const {
 }
 
 std::optional<BoxEnclosure::Form> BoxEnclosure::first_order(Index row) const {
-  if (form_ != AffineForm::first_order || !is_enclosed(row) ||
-      !remainders_[as_size(row)].is_finite())
+  if (!has_second_derivatives() || !is_enclosed(row) || !remainders_[as_size(row)].is_finite())
     return std::nullopt;
   const Form form{at_center_[as_size(row)] + remainders_[as_size(row)],
                   gradient_at_center_.data() + first_entry(row)};

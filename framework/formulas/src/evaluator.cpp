@@ -104,6 +104,12 @@ void Evaluator::evaluate(std::span<const Interval> variables) {
   for (int place = 0; place < static_cast<int>(values_.size()); ++place) forward(place, variables);
 }
 
+Interval Evaluator::evaluate_row(std::span<const Interval> variables, Index row) {
+  violations_.clear();
+  for (const int place : function_->parts(row)) forward(place, variables);
+  return violations_.empty() ? value(row) : real_line;
+}
+
 const Violation* Evaluator::violation_of(Index row) const {
   const std::vector<int>& parts = function_->parts(row);
   const auto found = std::ranges::find_if(violations_, [&](const Violation& violation) {

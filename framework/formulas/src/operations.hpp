@@ -9,6 +9,8 @@ namespace cordon::formulas {
 
 inline constexpr Interval one{1, 1};
 inline Interval point(double x) { return {x, x}; }
+/// Rounded; within the interval.
+inline double middle(Interval x) { return 0.5 * x.lower + 0.5 * x.upper; }
 
 /// Where the first operand `a` stands to the domain of the operation.
 elementary::Domain domain_of(const Node& node, Interval a);

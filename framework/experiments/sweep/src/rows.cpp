@@ -26,8 +26,9 @@ void write_numbers_of(JsonWriter& json, const char* key, const PointResult& resu
 }  // namespace
 
 std::optional<Errc> error_code(std::string_view name) {
-  for (const Errc code : {Errc::dimension, Errc::not_finite, Errc::invalid, Errc::unsupported,
-                          Errc::solver, Errc::time_limit, Errc::plugin, Errc::io, Errc::internal}) {
+  for (const Errc code :
+       {Errc::dimension, Errc::not_finite, Errc::invalid, Errc::unsupported, Errc::not_enclosed,
+        Errc::solver, Errc::time_limit, Errc::plugin, Errc::io, Errc::violated, Errc::internal}) {
     if (to_string(code) == name) return code;
   }
   return std::nullopt;

@@ -2,6 +2,8 @@
 // Pipelines, metrics and plants: components that are asked whether they fit the system.
 #include <map>
 
+#include "cordon/interfaces/nonlinear_model.hpp"
+#include "cordon/solvers/set_questions.hpp"
 #include "reported_problems.hpp"
 #include "study/reading/read_parts.hpp"
 #include "study/reading/read_sets.hpp"
@@ -53,19 +55,34 @@ void check_together(const Cursor& pipeline, const PipelineSpec& spec, const Syst
   }
 }
 
+/// Can the observer begin anew where formulas are not enclosed?
+void check_admissible(const Cursor& option, const SystemPart& system) {
+  if (!system.formulas)
+    return option.error("is for systems of type \"nonlinear\"", "remove it here");
+  const std::shared_ptr<const NonlinearModel>& formulas = system.model.nonlinear;
+  if (!formulas) return;  // an error elsewhere
+  if (!formulas->admissible || !interval_hull(*formulas->admissible).is_bounded())
+    option.error("needs a bounded set that holds the state at all times",
+                 "give the system an \"admissible\" set with finite bounds");
+}
+
 /// What becomes of samples that contradict the model: keys that belong to an observer.
 void read_options(const Cursor& at, const SystemPart& system, const ComponentContext& context,
                   PipelineSpec& spec) {
   EstimationSpec* const estimation = spec.estimation();
   const auto on_empty = at.find("on_empty"), restart_set = at.find("restart_set"),
-             outliers = at.find("outliers");
-  for (const auto& option : {on_empty, restart_set, outliers}) {
+             outliers = at.find("outliers"), on_not_enclosed = at.find("on_not_enclosed");
+  for (const auto& option : {on_empty, restart_set, outliers, on_not_enclosed}) {
     if (option && !estimation)
       option->error("belongs to pipelines with an observer", "remove it here");
   }
   if (!estimation) return;
   if (on_empty && read_choice(*on_empty, on_empty_names()) == "restart")
     estimation->on_empty = OnEmpty::restart;
+  if (on_not_enclosed && read_choice(*on_not_enclosed, on_not_enclosed_names()) == "restart") {
+    estimation->on_not_enclosed = OnNotEnclosed::restart;
+    check_admissible(*on_not_enclosed, system);
+  }
   if (system.sizes.states) estimation->restart_set = make_space(*system.sizes.states);
   if (restart_set) {
     if (estimation->on_empty != OnEmpty::restart)
@@ -130,7 +147,7 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
   const std::string form =
       "{\"name\": ..., \"backend\": {\"type\": ...}, \"observer\": {\"type\": ...}}";
   if (!at.expect_keys({"name", "backend", "observer", "diagnoser", "designer", "on_empty",
-                       "restart_set", "outliers"},
+                       "restart_set", "on_not_enclosed", "outliers"},
                       "key of a pipeline", form))
     return spec;
   const auto backend_at = at.need("backend", "the set representation: {\"type\": ...}");
@@ -155,6 +172,8 @@ const std::vector<std::string>& on_empty_names() {
   static const std::vector<std::string> names{"stop", "restart"};
   return names;
 }
+
+const std::vector<std::string>& on_not_enclosed_names() { return on_empty_names(); }
 
 void read_plant(const Cursor& at, const SystemPart& system, SimulateSpec& spec,
                 const ComponentContext& context) {

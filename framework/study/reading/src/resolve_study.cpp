@@ -281,6 +281,10 @@ void add_options(Json& pipeline, const EstimationSpec& spec) {
     pipeline["on_empty"] = on_empty_names()[static_cast<std::size_t>(spec.on_empty)];
     pipeline["restart_set"] = to_json(spec.restart_set);
   }
+  if (spec.on_not_enclosed != OnNotEnclosed::stop) {
+    pipeline["on_not_enclosed"] =
+        on_not_enclosed_names()[static_cast<std::size_t>(spec.on_not_enclosed)];
+  }
   if (spec.outliers > 0)
     pipeline["outliers"] = {{"most", spec.outliers}, {"in", spec.outlier_window}};
 }

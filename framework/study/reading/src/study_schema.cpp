@@ -268,6 +268,11 @@ Json definitions(const Registry& registry) {
                             "after an estimate that is proven empty: it stays empty, or the "
                             "observer begins anew with the next sample");
   on_empty["default"] = "stop";
+  Json on_not_enclosed = described(
+      one_of(json::on_not_enclosed_names()),
+      "where values of formulas over an estimate have no bounded enclosure: the pipeline ends, or "
+      "the observer begins anew from the system's admissible set, with this sample");
+  on_not_enclosed["default"] = "stop";
   const Json count = integer(1, static_cast<std::int64_t>(json::max_integer));
   const Json outliers =
       described(object({{"most", described(count, "samples of which outputs may be left out")},
@@ -282,6 +287,7 @@ Json definitions(const Registry& registry) {
                                                     "holds the state where the "
                                                     "observer begins anew; the whole space by "
                                                     "default")},
+                          {"on_not_enclosed", on_not_enclosed},
                           {"outliers", outliers},
                           {"diagnoser", reference("diagnoser")},
                           {"designer", reference("designer")}},

@@ -98,6 +98,11 @@ void write_contradictions(JsonWriter& json, const EstimationOutcome& outcome) {
     json.end_object();
   }
   if (outcome.restarts > 0) json.member("restarts", outcome.restarts);
+  if (outcome.not_enclosed > 0) {
+    json.key("not_enclosed").begin_object().member("times", outcome.not_enclosed);
+    json.member("from", outcome.not_enclosed_from).member("reason", outcome.why_not_enclosed);
+    json.end_object();
+  }
   if (outcome.outliers == 0) return;
   json.key("outliers").begin_object().member("samples", outcome.outliers);
   json.key("left_out").begin_array(JsonWriter::Layout::lines);

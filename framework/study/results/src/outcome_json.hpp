@@ -23,8 +23,9 @@ void write_growth(JsonWriter& json, const EstimationOutcome& outcome);
 
 /// NAME: [outputs, from 1 on].
 void write_outputs(JsonWriter& json, const char* name, const std::vector<Index>& outputs);
-/// "contradiction": {k, output, distance} of the first empty estimate; "restarts"; "outliers":
-/// {samples, left_out: [{k, outputs, output, distance}]}: those that there are.
+/// "contradiction": {k, output, distance} of the first empty estimate; "restarts"; "not_enclosed":
+/// {times, from, reason}; "outliers": {samples, left_out: [{k, outputs, output, distance}]}: those
+/// that there are.
 void write_contradictions(JsonWriter& json, const EstimationOutcome& outcome);
 
 }  // namespace cordon::detail

@@ -81,16 +81,33 @@ class EstimationRun final : public PipelineRun {
 
   bool restarts() const { return spec_.estimation()->on_empty == OnEmpty::restart; }
 
-  /// An estimate that was proven empty is followed by one that knows nothing of what was before.
-  void begin_anew(Index k) {
+  /// From now on nothing is known of what was before but that the state is in the set.
+  void begin_anew(Index k, const LineForm& set) {
     since_ = k;
-    const LineForm& set = spec_.estimation()->restart_set;
     observer_->start(backend()->import(set));
     rounding_.emplace(context_.study.model, set, *rounding());
     before_.reset();
     passed_.clear();
     growth_ = {};
-    ++found_.restarts;
+  }
+
+  Estimate step(const Sample& sample, bool anew) {
+    if (anew) {
+      begin_anew(sample.k, spec_.estimation()->restart_set);
+      ++found_.restarts;
+    }
+    try {
+      return observer_->step(sample);
+    } catch (const Error& error) {
+      const bool goes_on = spec_.estimation()->on_not_enclosed == OnNotEnclosed::restart;
+      if (error.code() != Errc::not_enclosed || !goes_on) throw;
+      if (found_.not_enclosed++ == 0) {
+        found_.not_enclosed_from = sample.k;
+        found_.why_not_enclosed = error.what();
+      }
+    }
+    begin_anew(sample.k, assumptions_->admissible_set.value());
+    return observer_->step(sample);
   }
 
   /// What was left out of the sample, or contradicts what was known.
@@ -119,8 +136,7 @@ class EstimationRun final : public PipelineRun {
     const bool anew = restarts() && was_empty_;
     seen_.reset();
     guarded([&] {
-      if (anew) begin_anew(given.sample.k);
-      estimate = observer_->step(given.sample);
+      estimate = step(given.sample, anew);
       tell_contradiction(given);
       const Record& record = seen_ ? *seen_ : given;
       was_empty_ = estimate->consistent == Answer::no;

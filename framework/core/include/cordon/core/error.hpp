@@ -12,16 +12,17 @@ namespace cordon {
 
 /// Reason of an Error, for programs; the text is for people.
 enum class Errc {
-  dimension,    ///< sizes do not fit together
-  not_finite,   ///< NaN or infinity where a number is needed
-  invalid,      ///< a value outside its domain (negative radius, unknown parameter, …)
-  unsupported,  ///< the operation cannot enclose its result in this representation
-  solver,       ///< a solver broke down in a way that leaves no sound answer
-  time_limit,   ///< a limit of time was reached before there was an answer
-  plugin,       ///< a plugin was refused or broke its contract
-  io,           ///< reading or writing failed
-  violated,     ///< a component said something that is proven false
-  internal      ///< a defect of this program
+  dimension,     ///< sizes do not fit together
+  not_finite,    ///< NaN or infinity where a number is needed
+  invalid,       ///< a value outside its domain (negative radius, unknown parameter, …)
+  unsupported,   ///< the operation cannot enclose its result in this representation
+  not_enclosed,  ///< values of formulas over a set have no bounded enclosure
+  solver,        ///< a solver broke down in a way that leaves no sound answer
+  time_limit,    ///< a limit of time was reached before there was an answer
+  plugin,        ///< a plugin was refused or broke its contract
+  io,            ///< reading or writing failed
+  violated,      ///< a component said something that is proven false
+  internal       ///< a defect of this program
 };
 
 std::string_view to_string(Errc code) noexcept;

@@ -52,6 +52,9 @@ std::string assumptions_of(const RunFiles& files, const Cursor& pipeline, const 
         "; outputs of " + shown(value_of(*outliers, "samples"), 15) + " samples not keeping to V";
   if (const double restarts = value_of(summary, "restarts"); !std::isnan(restarts))
     text += "; the state in the restart set, " + shown(restarts, 15) + " times";
+  if (const auto anew = object_of(summary, "not_enclosed"))
+    text += "; where formulas were not enclosed the admissible set alone, " +
+            shown(value_of(*anew, "times"), 15) + " times";
   const double until = value_of(summary, "assumptions_until");
   return std::isnan(until) ? text : text + "; left at " + time_of(files, until);
 }
@@ -149,6 +152,12 @@ void add_contradictions(const RunFiles& files, const std::string& name, const Cu
                     "state being in "
                     "it.",
                     name, shown(restarts, 15)));
+  }
+  if (const auto anew = object_of(summary, "not_enclosed")) {
+    report.notes.push_back(
+        fmt::format("\"{}\" began anew from the admissible set, {} times, the first at {}: {}.",
+                    name, shown(value_of(*anew, "times"), 15),
+                    time_of(files, value_of(*anew, "from")), text_of(*anew, "reason")));
   }
   const auto outliers = object_of(summary, "outliers");
   if (!outliers) return;

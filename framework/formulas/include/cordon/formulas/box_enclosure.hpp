@@ -17,7 +17,10 @@ namespace cordon::formulas {
 /// enclose its derivatives over B.
 enum class AffineForm {
   mean_value,  ///< F(z) - F(h) ∈ [J] (z - h)                                     [Kuhn1998]
-  first_order  ///< F(z) - F(h) - J(h) (z - h) = ½ (z - h)ᵀ H (z - h), H ∈ [H]    [Combastel2005]
+  first_order,  ///< F(z) - F(h) - J(h) (z - h) = ½ (z - h)ᵀ H (z - h), H ∈ [H]   [Combastel2005]
+  /// The same, and its bounds as a difference of convex functions at the vertices of B, for rows
+  /// that are not affine in 1 to 4 variables.                      [Alamo2008], [dePaula2024]
+  convex_differences
 };
 
 /// Encloses the rows of one function over one box after the other. Of its differentiated variables,
@@ -60,13 +63,20 @@ class BoxEnclosure {
     double value = 0, radius = 0;
   };
   /// Writes the slope. A row whose second derivatives are not bounded gets its mean value, one
-  /// whose first ones are not bounded its natural extension with slope 0; the radius is infinite if
-  /// there is none.
+  /// whose first ones are not bounded either the same with slopes, or where they have no bounds its
+  /// natural extension with slope 0; the radius is infinite if there is none.
   Affine affine(Index row, Eigen::Ref<Eigen::RowVectorXd> slope) const;
 
  private:
   void take_derivatives(std::span<const Interval> variables);
+  void take_slopes(std::span<const Interval> variables);
+  void set_center(std::span<const Interval> variables);
   void take_point(std::span<const Interval> variables);
+  bool is_bounded_by_vertices(Index row) const;
+  bool has_second_derivatives() const { return form_ != AffineForm::mean_value; }
+  std::vector<Index> bent_variables(Index row) const;  ///< none: there are more than 4
+  void take_curvature(Index row);
+  void take_vertices(std::span<const Interval> variables, Index row);
   Interval remainder(Index row) const;  ///< ½ (z - h)ᵀ [H] (z - h)
   /// F(z) ∈ offset + gradient · (z - h), both intervals and bounded.
   struct Form {
@@ -87,8 +97,15 @@ class BoxEnclosure {
   std::vector<Interval> natural_, at_center_;
   std::vector<double> errors_;
   std::vector<std::string> reasons_;
+  std::vector<bool> has_slopes_;      ///< rows whose derivatives over the box are not bounded
   std::vector<std::size_t> entries_;  ///< where the partial derivatives of a row begin
   std::vector<Interval> gradient_, gradient_at_center_, remainders_;
+  std::vector<std::vector<Index>> bent_;  ///< variables in which a row is not affine, if it matters
+  /// ½ λ n and ½ λ' n of a row.
+  struct Curvature {
+    double below = 0, above = 0;
+  };
+  std::vector<Curvature> curvatures_;
 };
 
 }  // namespace cordon::formulas

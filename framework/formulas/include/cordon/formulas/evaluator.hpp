@@ -35,7 +35,8 @@ struct Violation {
 /// cases; see elementary.hpp.
 ///
 /// Cost: O(tape) values, O(tape · variables of a part) gradients, O(tape · pairs) Hessians.
-/// Sources: [Moore2009] natural extension, [Rall1981] jets, [Benhamou1999] contraction.
+/// Sources: [Moore2009] natural extension, [Rall1981] jets, [Neumaier1990] slopes,
+/// [Benhamou1999] contraction.
 class Evaluator {
  public:
   Evaluator(std::shared_ptr<const Function> function, Rounding rounding,
@@ -48,6 +49,11 @@ class Evaluator {
   void evaluate(std::span<const Interval> variables);
   /// Of the last box; the real line where `violations` has a part of the row.
   Interval value(Index row) const { return values_[as_size(function_->place(row))]; }
+  /// The value of one row alone at another box; the real line where it has none. Values of the last
+  /// `evaluate` are no longer valid.
+  Interval evaluate_row(std::span<const Interval> variables, Index row);
+  Interval part(int place) const { return values_[static_cast<std::size_t>(place)]; }
+  Rounding rounding() const { return rounding_; }
   /// Is the value of the row an enclosure, and bounded?
   bool is_enclosed(Index row) const;
   /// Bounds for all rows, over the last box, of what their values in ordinary double arithmetic are
@@ -66,6 +72,11 @@ class Evaluator {
   /// kink of abs, min or max within the box).
   void differentiate();
   void differentiate_twice();
+  /// Slopes S over the box of the last `evaluate` take the place of the first derivatives:
+  /// F(x) - F(h) ∈ S (x - h) for all x of the box, h being a point of it. They are no wider, and
+  /// bounded at many ends of a domain where derivatives are not, as those of a root at 0. O(tape ·
+  /// variables of a part).
+  void take_slopes(std::span<const Interval> center);
   /// The derivative of the row; {0, 0} where the structure says so.
   struct Partial {
     int variable;
@@ -98,6 +109,8 @@ class Evaluator {
   std::vector<Interval> values_, gradients_, hessians_;
   std::vector<double> errors_;
   std::vector<Violation> violations_;
+  std::vector<Interval> other_values_;  ///< at the centre of slopes
+  std::vector<Violation> other_violations_;
 };
 
 }  // namespace cordon::formulas

@@ -194,6 +194,10 @@ struct EstimationOutcome {
   std::int64_t inconsistent_from = -1;              ///< first k with an estimate proven empty
   std::optional<Contradiction> contradiction = {};  ///< of that k
   std::int64_t restarts = 0;  ///< times that the observer began anew after an empty estimate
+  /// Times that it began anew from the admissible set, as no bounded set enclosed the formulas, and
+  /// the first of them.
+  std::int64_t not_enclosed = 0, not_enclosed_from = -1;
+  std::string why_not_enclosed = {};
   std::vector<LeftOut> left_out = {};  ///< the first 10,000 samples with outliers
   std::int64_t outliers = 0;           ///< such samples in all
   std::int64_t outside_from = -1;  ///< first k with the truth proven outside the estimate, by more

@@ -142,9 +142,16 @@ enum class OnEmpty {
   restart  ///< the observer begins anew from a set, with the next sample
 };
 
+/// What follows where an estimate has no bounded enclosure by formulas.
+enum class OnNotEnclosed {
+  stop,    ///< the pipeline ends
+  restart  ///< the observer begins anew from the system's admissible set, with this sample
+};
+
 struct EstimationSpec {
   ComponentSpec observer;
   OnEmpty on_empty = OnEmpty::stop;
+  OnNotEnclosed on_not_enclosed = OnNotEnclosed::stop;
   LineForm restart_set = {};        ///< holds the state where the observer begins anew
   std::int64_t outliers = 0;        ///< samples of which outputs may be left out
   std::int64_t outlier_window = 1;  ///< in so many that follow each other
