@@ -30,7 +30,8 @@ std::string evidence_text(const ModeEvidence& evidence) {
   std::string text;
   const bool by_reset = distance_to_zero(evidence.reset_residual) > 0;
   const Box& shown = by_reset ? evidence.reset_residual : evidence.residual;
-  if (evidence.why.kind == Certificate::Kind::farkas) {  // not by the distance of one residual
+  if (evidence.why.kind == Certificate::Kind::farkas ||  // not by the distance of one residual
+      evidence.why.kind == Certificate::Kind::structure) {
     text = "no state explains the samples";
   } else if (const double outside = distance_to_zero(shown); outside > 0) {
     text =

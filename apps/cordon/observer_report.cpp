@@ -79,6 +79,13 @@ std::string state_name(const Labels& labels, Index i) {
   return labels.states.empty() ? fmt::format("x{}", i + 1) : label_of(labels.states, "x", i);
 }
 
+/// "gauge 1 [m] and gauge 2 [m]"
+std::string outputs_text(const Labels& labels, const std::vector<Index>& outputs) {
+  std::vector<std::string> names;
+  for (const Index output : outputs) names.push_back(label_of(labels.outputs, "y", output));
+  return fmt::format("{}", fmt::join(names, " and "));
+}
+
 /// How many samples, and what became of the first of them.
 std::string outliers_text(const Labels& labels, const std::string& name,
                           const EstimationOutcome& found) {
@@ -87,9 +94,10 @@ std::string outliers_text(const Labels& labels, const std::string& name,
       fmt::format("{}: outputs of {} left out as outliers, assumed not to keep to V:", name,
                   count(found.outliers, "sample"));
   for (std::int64_t i = 0; i < told; ++i) {
-    const Contradiction& worst = found.left_out[static_cast<std::size_t>(i)].worst;
+    const auto& [worst, outputs] = found.left_out[static_cast<std::size_t>(i)];
     text += fmt::format("{} at {} {}", i > 0 ? ";" : "", time_text(labels, worst.k),
                         missed_text(labels, worst));
+    if (outputs.size() > 1) text += fmt::format(" ({} left out)", outputs_text(labels, outputs));
   }
   if (found.outliers > told) text += fmt::format("; and {} more", found.outliers - told);
   return text + "\n";

@@ -259,9 +259,10 @@ void register_metrics(Registrar& registrar) {
         return std::make_unique<Radius>(params);
       },
       check_radius});
-  add<VolumeOfSet>(
-      registrar, "volume",
-      "volume of the set where its representation has an exact one, else of its interval hull");
+  add<VolumeOfSet>(registrar, "volume",
+                   "volume of the set where its representation has an exact one, else of its "
+                   "interval hull; takes "
+                   "long in three dimensions and more");
   add<ContainsTruth>(
       registrar, "contains_truth",
       "certified containment of the true state while the pipeline's assumptions hold");

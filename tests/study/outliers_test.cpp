@@ -110,6 +110,17 @@ TEST_CASE("outliers that are left out take no truth from any observer") {
   CHECK(samples > 4 * 20);
 }
 
+TEST_CASE("the message of an outlier names all outputs that are left out with it") {
+  Json study = recorded({{"outliers", {{"most", 1}, {"in", 2}}}});
+  study["system"].update(
+      {{"C", {{1}, {1}}},
+       {"names", {{"outputs", {"gauge [m]", "float [m]"}}}},
+       {"V", {{"type", "box"}, {"lower", {-0.1, -0.1}}, {"upper", {0.1, 0.1}}}}});
+  study["data"]["csv"]["outputs"] = {"y", "z"};
+  const Run run(study, "y,z\n0,0\n1,1\n0,0\n");
+  CHECK_MESSAGE(run.outcome.says("(gauge [m] and float [m] left out)"), run.outcome.out);
+}
+
 TEST_CASE("outliers that are used are an assumption that fails, and no defect") {
   Json study = tanks(1, 30);
   add_pipelines(study, Json::object());

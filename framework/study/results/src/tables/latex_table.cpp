@@ -133,7 +133,7 @@ std::string heading_text(const ComparisonTable& table) {
 
 void write_latex(Sink& file, const std::string& title, const ComparisonTable& table) {
   std::string caption = latex_text(title);
-  if (!caption.ends_with('.')) caption += '.';
+  if (!caption.ends_with('.') && !caption.ends_with('?') && !caption.ends_with('!')) caption += '.';
   for (const std::string& note : table.notes) caption.append(" ").append(latex_text(note));
   file.write(
       "% Needs \\usepackage{booktabs,graphicx}; in two-column papers table* in place of table. "
