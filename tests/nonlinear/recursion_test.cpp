@@ -7,71 +7,15 @@
 #include <doctest/doctest.h>
 
 #include "input_design/plugins.hpp"
+#include "nonlinear/methods.hpp"
 #include "nonlinear/reference.hpp"
 
 using namespace cordon;
 using namespace cordon::test;
 using estimators::NonlinearOptions;
 using estimators::NonlinearRecursion;
-using formulas::AffineForm;
 
 namespace {
-
-struct Method {
-  const char* reference;
-  const char* backend;
-  NonlinearOptions options;
-};
-
-NonlinearOptions options(AffineForm form, bool contracts, bool carries_box, bool row_by_row) {
-  NonlinearOptions made;
-  made.form = form;
-  made.contracts = contracts;
-  made.carries_box = carries_box;
-  made.row_by_row = row_by_row;
-  return made;
-}
-
-NonlinearOptions relaxation(bool contracts) {
-  NonlinearOptions made = options(AffineForm::first_order, contracts, contracts, false);
-  made.relaxes = true;
-  return made;
-}
-
-NonlinearOptions boxes() {
-  NonlinearOptions made;
-  made.form = AffineForm::mean_value;
-  made.boxes_only = true;
-  return made;
-}
-
-NonlinearOptions natural() {
-  NonlinearOptions made = boxes();
-  made.natural_only = true;
-  return made;
-}
-
-const std::vector<Method>& methods() {
-  static const std::vector<Method> all = {
-      {"interval_natural", "interval", natural()},
-      {"interval", "interval", boxes()},
-      {"zonotope_mean_value", "zonotope", options(AffineForm::mean_value, false, false, true)},
-      {"zonotope_first_order_box", "zonotope", options(AffineForm::first_order, true, true, true)},
-      {"cz_mean_value", "constrained_zonotope",
-       options(AffineForm::mean_value, false, false, false)},
-      {"cz_first_order", "constrained_zonotope",
-       options(AffineForm::first_order, false, false, false)},
-      {"cz_mean_value_hc4", "constrained_zonotope",
-       options(AffineForm::mean_value, true, true, false)},
-      {"cz_first_order_hc4", "constrained_zonotope",
-       options(AffineForm::first_order, true, true, false)},
-      {"cz_dc_scaled", "constrained_zonotope",
-       options(AffineForm::convex_differences, false, false, false)},
-      {"cz_relaxation", "constrained_zonotope", relaxation(false)},
-      {"cz_relaxation_hc4", "constrained_zonotope", relaxation(true)},
-  };
-  return all;
-}
 
 /// By how much of a width hulls may exceed the reference on one side. Strips that do not cut a
 /// zonotope leave it as it is here, and change it there: one of 110 hulls is wider by 0.04 %.
