@@ -70,7 +70,16 @@ NonlinearRecursion::NonlinearRecursion(const Model& model,
       V_hull_(V_->interval_hull()),
       f_variables_(as_size(model_->f->variables())),
       g_variables_(as_size(model_->g->variables())) {
+  contracts_ = options_.contracts && (options_.boxes_only || options_.row_by_row ||
+                                      options_.relaxes || has_bent_outputs());
+  needs_predicted_hull_ = contracts_ || options_.row_by_row || has_bent_outputs();
   if (model_->admissible) take_admissible(*model_->admissible);
+}
+
+bool NonlinearRecursion::has_bent_outputs() const {
+  for (Index row = 0; row < model_->g->rows(); ++row)
+    if (!model_->g->is_affine(row)) return true;
+  return false;
 }
 
 /// With nominal sets by as much wider as their proofs are: a state on its boundary is rounded.
@@ -91,7 +100,7 @@ void NonlinearRecursion::take_admissible(const LineForm& set) {
 bool NonlinearRecursion::start(Enclosure X) {
   before_.reset();
   set(std::move(X));
-  B_ = hull_;
+  B_ = hull();
   return admit();
 }
 
@@ -108,17 +117,23 @@ bool NonlinearRecursion::admit() {
 
 void NonlinearRecursion::set(Enclosure X) {
   X_ = std::move(X);
-  hull_ = X_->interval_hull();
-  if (backend_->info().rounding != Rounding::nominal || hull_.is_empty()) return;
+  hull_.reset();
+}
+
+const Box& NonlinearRecursion::hull() const {
+  if (hull_) return *hull_;
+  Box& box = hull_.emplace(X_->interval_hull());
+  if (backend_->info().rounding != Rounding::nominal || box.is_empty()) return box;
   // The hull of a nominal set holds up to rounding errors of the terms it is made of, the box at
   // all times.
-  for (Index i = 0; i < hull_.dim(); ++i) {
-    const double size = std::max(std::abs(hull_.lower[i]), std::abs(hull_.upper[i]));
+  for (Index i = 0; i < box.dim(); ++i) {
+    const double size = std::max(std::abs(box.lower[i]), std::abs(box.upper[i]));
     const double room =
         std::max(tolerances::proof_margin * size, rounding_doubt * f_.rounding_error(i));
-    hull_.lower[i] -= room;
-    hull_.upper[i] += room;
+    box.lower[i] -= room;
+    box.upper[i] += room;
   }
+  return box;
 }
 
 void NonlinearRecursion::set_variables(std::vector<Interval>& variables, const Box& noise,
@@ -169,7 +184,9 @@ bool NonlinearRecursion::predict(VectorIn u, Index k) {
                unit = Matrix::Identity(n, n);
   const Term terms[] = {{disturbed, W_}, {unit, rest}};
   set(backend_->predict(X_, {form.slope.leftCols(n), form.offset, terms}));
-  B_ = options_.carries_box ? intersected(hull_, range) : hull_;
+  B_ = std::move(range);
+  if (!model_->admissible && !needs_predicted_hull_) return true;
+  B_ = options_.carries_box ? intersected(hull(), B_) : hull();
   return admit();
 }
 
@@ -226,8 +243,8 @@ bool NonlinearRecursion::contract(const Sample& now) {
 }
 
 bool NonlinearRecursion::narrow_box() {
-  if (hull_.is_empty()) return false;
-  B_ = intersected(B_, hull_);
+  if (hull().is_empty()) return false;
+  B_ = options_.carries_box ? intersected(B_, hull()) : hull();
   return !B_.is_empty();
 }
 
@@ -240,7 +257,7 @@ void NonlinearRecursion::set_box() {
 bool NonlinearRecursion::cut_by_box() {
   std::vector<Index> narrower;
   for (Index i = 0; i < B_.dim(); ++i)
-    if ((B_.lower[i] > hull_.lower[i] || B_.upper[i] < hull_.upper[i]) &&
+    if ((B_.lower[i] > hull().lower[i] || B_.upper[i] < hull().upper[i]) &&
         std::isfinite(B_.lower[i]) && std::isfinite(B_.upper[i]))
       narrower.push_back(i);
   if (narrower.empty()) return true;
@@ -258,13 +275,13 @@ bool NonlinearRecursion::cut_by_box() {
 }
 
 bool NonlinearRecursion::correct_rows(const Sample& now, const std::vector<Index>& rows) {
-  if (!B_.is_bounded()) return true;  // no affine form
+  if (!B_.is_bounded()) return narrow_box();  // no affine form
   set_variables(g_variables_, V_hull_, now.u, now.k);
   g_.set_box(g_variables_);
   std::vector<Index> usable;
   std::ranges::copy_if(rows, std::back_inserter(usable),
                        [&](Index row) { return g_.is_enclosed(row); });
-  if (usable.empty()) return true;
+  if (usable.empty()) return narrow_box();
   const Index n = model_->states(), count = static_cast<Index>(usable.size());
   AffineRows form = affine_rows(g_, usable);
   Vector z(count);
@@ -284,13 +301,13 @@ bool NonlinearRecursion::correct_rows(const Sample& now, const std::vector<Index
 }
 
 bool NonlinearRecursion::correct(const Sample& now) {
-  if (options_.contracts && !contract(now)) return false;
+  if (contracts_ && !contract(now)) return false;
   if (options_.boxes_only) {
     set_box();
     return true;
   }
   if (options_.relaxes) return correct_relaxed(now);
-  if (options_.contracts && !options_.row_by_row && !cut_by_box()) return false;
+  if (contracts_ && !options_.row_by_row && !cut_by_box()) return false;
   const std::vector<Index> rows = rows_of(now);
   if (!options_.row_by_row) return correct_rows(now, rows);
   return std::ranges::all_of(rows, [&](Index row) { return correct_rows(now, {row}); });

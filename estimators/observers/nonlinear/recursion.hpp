@@ -61,7 +61,7 @@ class NonlinearRecursion {
 
   const Enclosure& set() const { return X_; }
   const Box& box() const { return B_; }
-  const Box& hull() const { return hull_; }  ///< of the set
+  const Box& hull() const;  ///< of the set, as it was before it was reduced
 
  private:
   /// The box of x, of w or v, u and k, as variables of f or g.
@@ -80,6 +80,9 @@ class NonlinearRecursion {
   bool correct_relaxed(const Sample& now);
   /// x_k as affine expressions of the step's variables.
   std::vector<formulas::AffineExpression> successors(RelaxedStep& step);
+  /// Is anything to be had of the formulas of g and h that sets with exact intersections do not
+  /// find by their linear form?
+  bool has_bent_outputs() const;
   /// The rows of g and h of which values are there.
   std::vector<Index> rows_of(const Sample& now) const;
   /// For a rounding error, and that of a value beside it.
@@ -90,10 +93,13 @@ class NonlinearRecursion {
   std::shared_ptr<const SetBackend> backend_;
   NonlinearOptions options_;
   formulas::BoxEnclosure f_, g_;
+  /// Contraction is left out where it finds nothing, and the hull of the prediction where nothing
+  /// rests on it.
+  bool contracts_ = false, needs_predicted_hull_ = false;
   Enclosure W_, V_, X_,
       admissible_;  ///< the last one: none, or unbounded and no set of the backend
   Box W_hull_, V_hull_, admissible_hull_, B_;
-  Box hull_;  ///< of X
+  mutable std::optional<Box> hull_;  ///< of X, where it was asked for
   /// X_{k-1} where X_k is still to be made: relaxations predict and correct at once.
   struct Before {
     Enclosure X;
