@@ -8,6 +8,7 @@ namespace cordon::estimators {
 
 void register_prediction_correction(Registrar& registrar);
 void register_nonlinear(Registrar& registrar);
+void register_nonlinear_strips(Registrar& registrar);
 void register_descriptor(Registrar& registrar);
 void register_luenberger(Registrar& registrar);
 void register_zonotope_uncertain(Registrar& registrar);

@@ -6,6 +6,7 @@ namespace {
 void register_components(cordon::Registrar& registrar) {
   cordon::estimators::register_prediction_correction(registrar);
   cordon::estimators::register_nonlinear(registrar);
+  cordon::estimators::register_nonlinear_strips(registrar);
   cordon::estimators::register_descriptor(registrar);
   cordon::estimators::register_luenberger(registrar);
   cordon::estimators::register_zonotope_uncertain(registrar);

@@ -13,7 +13,7 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr int most_steps = 100'000;
+constexpr int most_recursions = 100'000;
 constexpr double allowed_change = 1e-13;  // relative change of P
 constexpr double settled =
     1e-6;  // a change that is still above it, but is rounding: it has stopped decreasing
@@ -59,7 +59,7 @@ Matrix steady_kalman_gain(const Model& model) {
   Matrix P = Q;
   double least = infinity;
   int waited = 0;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < most_recursions; ++step) {
     const Matrix PCt = linalg::product(P, C.transpose());
     const Matrix S = linalg::product(C, PCt) + R;
     const std::optional<Matrix> gain = linalg::solve_spd(S, linalg::product(m.A, PCt).transpose());

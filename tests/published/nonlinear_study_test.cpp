@@ -33,6 +33,10 @@ TEST_CASE("methods for formulas: widths of the predator-prey system after ten st
       {"zonotope, mean value", Vector{{.724, .224}}},
       {"zonotope, first order", Vector{{.704, .208}}},
       {"zonotope, first order + box", Vector{{.2375, .0372}}},
+      {"strips, F-radius", Vector{{.68, .14}}},
+      {"strips, F-radius, one gain", Vector{{.51, .12}}},
+      {"strips, volume", Vector{{.47, .11}}},
+      {"strips, volume by columns", Vector{{.47, .11}}},
       {"constrained, relaxation", Vector{{.338, .058}}},
       {"constrained, dc + HC4", Vector{{.2075, .0357}}},
       {"constrained, relaxation + HC4", Vector{{.207, .0355}}}};

@@ -59,6 +59,39 @@ TEST_CASE("a pendulum by formulas: the truth stays inside, and verification find
   }
 }
 
+TEST_CASE("observers by strips: the truth stays inside, and verification finds nothing") {
+  Json study = pendulum();
+  study["pipelines"] = Json::array();
+  for (const char* variant : {"frad_a", "frad_b", "frad_c", "vol_min_a", "vol_min_b"}) {
+    study["pipelines"].push_back(
+        {{"name", variant},
+         {"backend", "zonotope"},
+         {"observer", {{"type", "nonlinear_strips"}, {"variant", variant}}}});
+  }
+  study["data"]["simulate"]["dropouts"] = {{{"probability", 0.2}}};
+  const Run run(study);
+  CAPTURE(run.outcome.out);
+  REQUIRE(run.outcome.code == 0);
+  for (std::size_t i = 0; i < 5; ++i) {
+    CHECK(run.pipeline(i)["summary"]["outside_from"].is_null());
+    CHECK(run.pipeline(i)["summary"]["inconsistent_from"].is_null());
+  }
+  // Sets that are predictions need not hold all successors: those of frad_c are passed over.
+  const test::Outcome verified = run("verify out");
+  CHECK_MESSAGE(verified.code == 5, verified.out);
+  CHECK_MESSAGE(verified.says("error: 40 checks could not be decided; all others hold"),
+                verified.out);
+
+  study["pipelines"][0]["backend"] = {{"type", "zonotope"}, {"rounding", "outward"}};
+  expect_told(Run(study), "computes in doubles");
+  study["pipelines"][0]["backend"] = "zonotope";
+  study["system"]["W"] = Json::parse(
+      R"({"type": "constrained_zonotope", "center": [0], "generators": [[0.1, 0.1]],
+          "A": [[1, -1]], "b": [0.5]})");
+  study["pipelines"][1]["backend"] = "constrained_zonotope";
+  expect_told(Run(study), "W is no zonotope, and this observer knows no others");
+}
+
 TEST_CASE("a hull that was altered is refuted by its proof") {
   const Run run(pendulum());
   REQUIRE(run.outcome.code == 0);

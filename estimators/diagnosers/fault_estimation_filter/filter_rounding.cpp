@@ -14,7 +14,7 @@ using linalg::product;
 
 namespace {
 
-constexpr Index most_steps = 64;      // whose rounding is carried in generators of its own
+constexpr Index most_own_steps = 64;  // whose rounding is carried in generators of its own
 constexpr double contraction = 0.25;  // of their box, until it is made
 
 Vector row_sums(const Matrix& A) { return A.cwiseAbs().rowwise().sum(); }
@@ -55,7 +55,7 @@ Index steps_to_contract(const Matrix& F) {
   constexpr double positive = 1e-6;
   const Index n = F.rows();
   Matrix power = F;
-  for (Index steps = 1; steps < most_steps; ++steps, power = product(F, power)) {
+  for (Index steps = 1; steps < most_own_steps; ++steps, power = product(F, power)) {
     const Matrix size = power.cwiseAbs();
     Vector v = Vector::Ones(n);
     for (int round = 0; round < rounds; ++round) {
@@ -66,7 +66,7 @@ Index steps_to_contract(const Matrix& F) {
     }
     if ((product(size, v).array() <= contraction * v.array()).all()) return steps;
   }
-  return most_steps;
+  return most_own_steps;
 }
 
 }  // namespace

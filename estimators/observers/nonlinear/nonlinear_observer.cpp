@@ -76,11 +76,9 @@ class NonlinearObserver final : public Observer {
 
   /// X ∩ B; where the backend cannot hold it, in exchange form.
   Enclosure estimate() const {
-    const Box &box = recursion_.box(), &hull = recursion_.hull();
+    const Box& box = recursion_.box();
     const Enclosure& X = recursion_.set();
-    const bool is_narrower = (box.lower.array() > hull.lower.array()).any() ||
-                             (box.upper.array() < hull.upper.array()).any();
-    if (!is_narrower) return X;
+    if (!recursion_.is_box_narrower()) return X;
     const Matrix unit = Matrix::Identity(box.dim(), box.dim());
     if (backend().info().intersections) {
       return backend().intersection(X, unit, backend().box(box));

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/tolerances.hpp"
@@ -24,37 +23,7 @@ Box intersected(const Box& a, const Box& b) {
   return {a.lower.cwiseMax(b.lower), a.upper.cwiseMin(b.upper)};
 }
 
-/// Several rows as value + slope (z - h) ± radius, moved to offset + slope z ± radius.
-struct AffineRows {
-  Matrix slope;
-  Vector offset, radius;
-};
-
-AffineRows affine_rows(const BoxEnclosure& enclosure, const std::vector<Index>& rows) {
-  const auto count = static_cast<Index>(rows.size());
-  AffineRows made{Matrix(count, enclosure.center().size()), Vector(count), Vector(count)};
-  Eigen::RowVectorXd slope(enclosure.center().size());
-  for (Index i = 0; i < count; ++i) {
-    const BoxEnclosure::Affine form = enclosure.affine(rows[as_size(i)], slope);
-    made.slope.row(i) = slope;
-    Interval offset{form.value, form.value};
-    for (Index j = 0; j < slope.size(); ++j)
-      offset = offset - directed::times(slope[j], enclosure.center()[j]);
-    made.offset[i] = 0.5 * offset.lower + 0.5 * offset.upper;
-    const double rest = std::max(directed::plus(offset.upper, -made.offset[i]).upper,
-                                 directed::plus(made.offset[i], -offset.lower).upper);
-    made.radius[i] = directed::plus(form.radius, rest).upper;
-  }
-  return made;
-}
-
 }  // namespace
-
-std::vector<Index> all_rows(Index count) {
-  std::vector<Index> rows(as_size(count));
-  std::iota(rows.begin(), rows.end(), Index{0});
-  return rows;
-}
 
 NonlinearRecursion::NonlinearRecursion(const Model& model,
                                        std::shared_ptr<const SetBackend> backend,
@@ -118,6 +87,7 @@ bool NonlinearRecursion::admit() {
 void NonlinearRecursion::set(Enclosure X) {
   X_ = std::move(X);
   hull_.reset();
+  is_reduced_ = false;
 }
 
 const Box& NonlinearRecursion::hull() const {
@@ -244,13 +214,14 @@ bool NonlinearRecursion::contract(const Sample& now) {
 
 bool NonlinearRecursion::narrow_box() {
   if (hull().is_empty()) return false;
-  B_ = options_.carries_box ? intersected(B_, hull()) : hull();
+  B_ = options_.carries_box || needs_predicted_hull_ ? intersected(B_, hull()) : hull();
   return !B_.is_empty();
 }
 
 void NonlinearRecursion::set_box() {
   X_ = backend_->box(B_);
   hull_ = B_;
+  is_reduced_ = false;
 }
 
 /// X ∩ {x : x_i ∈ B_i} for the coordinates in which B is bounded and narrower.
@@ -313,6 +284,15 @@ bool NonlinearRecursion::correct(const Sample& now) {
   return std::ranges::all_of(rows, [&](Index row) { return correct_rows(now, {row}); });
 }
 
-void NonlinearRecursion::reduce() { X_ = backend_->reduce(X_, options_.budget); }
+void NonlinearRecursion::reduce() {
+  const Enclosure reduced = backend_->reduce(X_, options_.budget);
+  is_reduced_ = reduced.set != X_.set;
+  X_ = reduced;
+}
+
+bool NonlinearRecursion::is_box_narrower() const {
+  return is_reduced_ || (B_.lower.array() > hull().lower.array()).any() ||
+         (B_.upper.array() < hull().upper.array()).any();
+}
 
 }  // namespace cordon::estimators

@@ -22,11 +22,9 @@
 #include "cordon/interfaces/backend.hpp"
 #include "cordon/interfaces/model.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
+#include "observers/nonlinear/affine_rows.hpp"
 
 namespace cordon::estimators {
-
-/// 0 … count - 1
-std::vector<Index> all_rows(Index count);
 
 struct NonlinearOptions {
   formulas::AffineForm form = formulas::AffineForm::first_order;
@@ -61,7 +59,8 @@ class NonlinearRecursion {
 
   const Enclosure& set() const { return X_; }
   const Box& box() const { return B_; }
-  const Box& hull() const;  ///< of the set, as it was before it was reduced
+  /// May the box exclude points of the set? The estimate is then X ∩ B: what follows rests on both.
+  bool is_box_narrower() const;
 
  private:
   /// The box of x, of w or v, u and k, as variables of f or g.
@@ -73,6 +72,7 @@ class NonlinearRecursion {
   bool admit();  ///< cuts by the admissible set
   bool correct_rows(const Sample& now, const std::vector<Index>& rows);
   void set(Enclosure X);
+  const Box& hull() const;
   void set_box();     ///< X = B
   bool narrow_box();  ///< B ∩ hull X; false: empty
   double target(Index row, const Sample& now) const;
@@ -99,7 +99,8 @@ class NonlinearRecursion {
   Enclosure W_, V_, X_,
       admissible_;  ///< the last one: none, or unbounded and no set of the backend
   Box W_hull_, V_hull_, admissible_hull_, B_;
-  mutable std::optional<Box> hull_;  ///< of X, where it was asked for
+  mutable std::optional<Box> hull_;  ///< of X before it was reduced, where it was asked for
+  bool is_reduced_ = false;          ///< X has been replaced by a larger set
   /// X_{k-1} where X_k is still to be made: relaxations predict and correct at once.
   struct Before {
     Enclosure X;

@@ -348,7 +348,8 @@ class Verification {
     if (!check.violation()) {
       if (!run_.model.is_linear()) {
         if (!samples_) samples_.emplace(run_.model, options_.seed);
-        found.by_supports += samples_->check(check, follows ? &start : nullptr, transition) ? 1 : 0;
+        const bool asked = follows && (estimation.follows_its_sets || !row_before);
+        found.by_supports += samples_->check(check, asked ? &start : nullptr, transition) ? 1 : 0;
       } else if (F && against_polytope(check, *F,
                                        follows ? successors_in(run_.model)
                                                : unknown_successors(row.set.dim()))) {
@@ -364,9 +365,8 @@ class Verification {
     found.proofs += check.proofs_that_hold();
     found.exact_claims += check.exact_claim_holds() ? 1 : 0;
     found.exact_claims_unproven += check.exact_claim_stays() ? 1 : 0;
-    if (check.undecided() > 0 && found.undecided == 0) {
+    if (check.undecided() > 0 && found.undecided == 0)
       found.first_undecided = fmt::format("k = {}: {}", row.k, check.first_undecided());
-    }
     found.undecided += check.undecided();
     if (const auto& violation = check.violation()) {
       outcome_.violation = {pipeline.name, row.k, violation->what,
