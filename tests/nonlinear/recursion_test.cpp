@@ -124,6 +124,36 @@ TEST_CASE("trajectories stay inside, whatever the method and its budget") {
   CHECK(enclosed > 15 * seeds * 4 * static_cast<int>(methods().size()));
 }
 
+TEST_CASE("a set whose small budget loses a coordinate is kept to its box") {
+  std::ifstream in(CORDON_SOURCE_DIR "/tests/nonlinear/six_tanks.json");
+  const Json data = Json::parse(in);
+  const Model model = model_of(data["system"]);
+  for (const char* strip : {"box", "segment", "hull"}) {
+    CAPTURE(std::string(strip));
+    const auto backend =
+        examples::registry().make<BackendEntry>("zonotope", Params().set("strip", strip));
+    NonlinearOptions chosen = options(AffineForm::first_order, true, true, true);
+    chosen.budget = {20, 0};
+    NonlinearRecursion recursion(model, backend, chosen);
+    Trajectory trajectory(model, 1);
+    recursion.start(backend->import(model.X0));
+    const Vector u{{0.28, 0.01, -0.01}};
+    for (Index k = 0; k < 3000; ++k) {
+      REQUIRE(recursion.correct({k, u, trajectory.output(u, k)}));
+      recursion.reduce();
+      if (k % 100 == 0) {
+        const Vector widths = 2 * recursion.box().radius(),
+                     own = 2 * recursion.set()->interval_hull().radius();
+        CAPTURE(k);
+        CHECK((own.array() <= 8 * widths.array()).all());
+        CHECK(recursion.box().contains(trajectory.x()));
+      }
+      recursion.predict(u, k);
+      trajectory.advance(u, k);
+    }
+  }
+}
+
 TEST_CASE("noise-free plants, also badly scaled ones, are never proven to have no state") {
   for (const double scale : {1.0, 1e-6, 1e7}) {
     Json system = {{"states", {"a", "b"}},

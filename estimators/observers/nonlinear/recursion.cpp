@@ -14,6 +14,8 @@ namespace {
 
 using formulas::BoxEnclosure;
 
+/// Of a set that tells nothing of a coordinate any more: its width beside that of the box.
+constexpr double lost_width = 4;
 /// A contraction that shrinks no side by more than this share of it is the last one.
 constexpr double least_progress = 0.01;
 /// Nominal proofs exceed rounding errors this many times.
@@ -232,17 +234,41 @@ bool NonlinearRecursion::cut_by_box() {
         std::isfinite(B_.lower[i]) && std::isfinite(B_.upper[i]))
       narrower.push_back(i);
   if (narrower.empty()) return true;
-  const auto count = static_cast<Index>(narrower.size());
+  cut(narrower);
+  return narrow_box();
+}
+
+void NonlinearRecursion::cut(const std::vector<Index>& coordinates) {
+  const auto count = static_cast<Index>(coordinates.size());
   Matrix rows = Matrix::Zero(count, B_.dim());
   Box sides = Box::space(count);
   for (Index i = 0; i < count; ++i) {
-    const Index coordinate = narrower[as_size(i)];
+    const Index coordinate = coordinates[as_size(i)];
     rows(i, coordinate) = 1;
     sides.lower[i] = B_.lower[coordinate];
     sides.upper[i] = B_.upper[coordinate];
   }
   set(backend_->intersection(X_, rows, backend_->box(sides)));
-  return narrow_box();
+}
+
+std::vector<Index> NonlinearRecursion::lost_coordinates() const {
+  std::vector<Index> lost;
+  for (Index i = 0; i < B_.dim(); ++i)
+    if (hull().upper[i] - hull().lower[i] > lost_width * (B_.upper[i] - B_.lower[i]))
+      lost.push_back(i);
+  return lost;
+}
+
+/// Zonotopes that are enclosed wherever they are cut may grow without end beside a box that stays:
+/// they are cut by it where they are this much wider, and are replaced by it where that is in vain.
+bool NonlinearRecursion::keep_to_box() {
+  if (!options_.carries_box || !B_.is_bounded()) return true;
+  const std::vector<Index> lost = lost_coordinates();
+  if (lost.empty()) return true;
+  for (const Index coordinate : lost) cut({coordinate});
+  if (!narrow_box()) return false;
+  if (!lost_coordinates().empty()) set_box();
+  return true;
 }
 
 bool NonlinearRecursion::correct_rows(const Sample& now, const std::vector<Index>& rows) {
@@ -281,7 +307,8 @@ bool NonlinearRecursion::correct(const Sample& now) {
   if (contracts_ && !options_.row_by_row && !cut_by_box()) return false;
   const std::vector<Index> rows = rows_of(now);
   if (!options_.row_by_row) return correct_rows(now, rows);
-  return std::ranges::all_of(rows, [&](Index row) { return correct_rows(now, {row}); });
+  return std::ranges::all_of(rows, [&](Index row) { return correct_rows(now, {row}); }) &&
+         keep_to_box();
 }
 
 void NonlinearRecursion::reduce() {

@@ -68,6 +68,9 @@ class NonlinearRecursion {
   bool contract(const Sample& now);
   bool contract_row(Index row, double value, double room);
   bool cut_by_box();
+  void cut(const std::vector<Index>& coordinates);
+  std::vector<Index> lost_coordinates() const;
+  bool keep_to_box();
   void take_admissible(const LineForm& set);
   bool admit();  ///< cuts by the admissible set
   bool correct_rows(const Sample& now, const std::vector<Index>& rows);
