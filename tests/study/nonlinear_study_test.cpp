@@ -250,6 +250,42 @@ TEST_CASE("where no set can be enclosed an observer may begin anew from the admi
   expect_told(Run(study), "needs a bounded set that holds the state at all times");
 }
 
+TEST_CASE("states may be assumed to lie where formulas are defined") {
+  Json study = Json::parse(R"json({"cordon": 1, "title": "a level near zero",
+    "system": {"type": "nonlinear", "states": ["level"], "inputs": ["pump"],
+      "disturbances": ["w"], "noises": ["v"],
+      "f": ["level + 0.1*(pump - sqrt(level)) + w"], "g": ["level + v"],
+      "X0": {"type": "box", "lower": [0], "upper": [0.4]},
+      "W": {"type": "box", "lower": [-0.001], "upper": [0.001]},
+      "V": {"type": "box", "lower": [-0.5], "upper": [0.5]}},
+    "data": {"simulate": {"steps": 50, "x0": [0.1],
+                          "input": [{"type": "constant", "offset": 0.2}]}},
+    "metrics": ["radius", "contains_truth"]})json");
+  for (const char* backend : {"interval", "zonotope", "constrained_zonotope"}) {
+    for (const char* method : {"interval", "mean_value", "first_order", "dc", "relaxation"}) {
+      const bool has_cuts = std::string(backend) == "constrained_zonotope";
+      if (std::string(method) == "relaxation" && !has_cuts) continue;
+      study["pipelines"].push_back({{"name", std::string(backend) + " " + method},
+                                    {"backend", backend},
+                                    {"observer", {{"type", "nonlinear"}, {"method", method}}}});
+    }
+  }
+  study["pipelines"].push_back(
+      {{"name", "strips"}, {"backend", "zonotope"}, {"observer", "nonlinear_strips"}});
+  const Run refused(study);
+  CHECK(refused.outcome.code == 2);
+  expect_told(refused, "sqrt(level) is not defined for every level in [-");
+  study["system"]["domain"] = "assumed";
+  const Run assumed(study);
+  CAPTURE(assumed.outcome.out);
+  REQUIRE(assumed.outcome.code == 0);
+  for (std::size_t i = 0; i < study["pipelines"].size(); ++i) {
+    const Json summary = assumed.pipeline(i)["summary"];
+    CHECK(summary["contains_truth_yes"] == 51);
+    CHECK(summary["inconsistent_from"].is_null());
+  }
+}
+
 TEST_CASE("an admissible set is assumed, and so is an invariant") {
   Json study = pendulum();
   study["system"]["admissible"] = {{"type", "box"}, {"lower", {0, -5}}, {"upper", {0.6, 5}}};

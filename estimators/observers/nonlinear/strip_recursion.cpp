@@ -98,6 +98,19 @@ void StripRecursion::start(const LineForm& X0) {
   G_ = X0.G;
 }
 
+/// f at k over a box or at a point.
+void StripRecursion::evaluate(const std::vector<Interval>& variables, Index k) {
+  f_.evaluate(variables);
+  for (Index row = 0; row < model_->states(); ++row) {
+    if (f_.is_enclosed(row)) continue;
+    const formulas::Violation* const why = f_.violation_of(row);
+    throw Error(Errc::not_enclosed,
+                "no bounded set encloses x_" + std::to_string(row + 1) +
+                    " at k = " + std::to_string(k + 1) + ": " +
+                    (why ? why->to_string(f_.function()) : "its bounds overflow"));
+  }
+}
+
 StripRecursion::Linearised StripRecursion::linearised(VectorIn u, Index k) {
   const Index n = model_->states(), m = n + model_->disturbances();
   std::vector<Interval> box, point;
@@ -109,21 +122,13 @@ StripRecursion::Linearised StripRecursion::linearised(VectorIn u, Index k) {
     const double center = i < n ? c_[i] : W_.c[i - n];
     point[as_size(i)] = {center, center};
   }
-  f_.evaluate(box);
-  for (Index row = 0; row < n; ++row) {
-    if (f_.is_enclosed(row)) continue;
-    const formulas::Violation* const why = f_.violation_of(row);
-    throw Error(Errc::not_enclosed,
-                "no bounded set encloses x_" + std::to_string(row + 1) +
-                    " at k = " + std::to_string(k + 1) + ": " +
-                    (why ? why->to_string(f_.function()) : "its bounds overflow"));
-  }
+  evaluate(box, k);
   f_.bound_rounding();
   f_.differentiate();
   f_.differentiate_twice();
   Linearised made{Vector::Zero(n), Matrix::Zero(n, n), Matrix::Zero(n, m - n), {}};
   Matrix columns = error_columns(made.value);
-  f_.evaluate(point);
+  evaluate(point, k);
   f_.differentiate();
   Vector reach(m);
   reach << radius(), radius_of_columns(W_.G);
@@ -133,6 +138,9 @@ StripRecursion::Linearised StripRecursion::linearised(VectorIn u, Index k) {
     rest += radius_of(f_.value(row)) + f_.rounding_error(row);
     for (std::size_t e = 0; e < f_.partials(row); ++e) {
       const auto [variable, slope] = f_.partial(row, e);
+      if (!slope.is_finite())
+        throw Error(Errc::not_enclosed, "the derivative of x_" + std::to_string(row + 1) +
+                                            " is not bounded at the centre of the estimate");
       (variable < n ? made.A(row, variable) : made.Bw(row, variable - n)) = middle_of(slope);
       rest += radius_of(slope) * reach[variable];
     }

@@ -48,6 +48,7 @@ class StripRecursion {
     Matrix A, Bw;   ///< slopes by x and by w
     Matrix errors;  ///< G_e
   };
+  void evaluate(const std::vector<Interval>& variables, Index k);
   Linearised linearised(VectorIn u, Index k);
   Matrix error_columns(Vector& center) const;
   AffineRows outputs(const Sample& now);
