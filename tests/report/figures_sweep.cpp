@@ -86,6 +86,25 @@ TEST_CASE("columns of the comparison have names of their own in a file") {
   CHECK(std::adjacent_find(file.begin(), file.end()) == file.end());
 }
 
+TEST_CASE("seconds stand beside k for people, where no axis changes them") {
+  const auto titles = [](const std::string& path, Detail detail) {
+    const SweepFiles sweep;
+    for (const char* number : {"4.000000", "3.000000"}) {
+      const std::string radius = std::string(R"({"radius_mean": )") + number;
+      sweep.files.replace("results.json", radius, radius + R"(, "first_detected_at": 3)");
+    }
+    sweep.files.replace("results.json", R"("study": {)",
+                        R"("study": {"system": {"sampling_time": 5}, )");
+    sweep.files.replace("results.json", "/pipelines/*/observer/order", path);
+    const auto header =
+        content<Table>(read_report(sweep.files.path(), detail), "comparison").header;
+    return std::find(header.begin(), header.end(), "detected at k (s)") != header.end();
+  };
+  CHECK(titles("/pipelines/*/observer/order", Detail::page));
+  CHECK_FALSE(titles("/pipelines/*/observer/order", Detail::all));
+  CHECK_FALSE(titles("/system/sampling_time", Detail::page));
+}
+
 TEST_CASE("who is best where, with the lead over the second") {
   const SweepFiles sweep;
   const Report report = read_report(sweep.files.path());

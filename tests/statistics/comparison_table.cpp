@@ -155,6 +155,17 @@ TEST_CASE("what is proven of designs has columns") {
   CHECK(titles(compared(table)).back() == "optimal");
 }
 
+TEST_CASE("times of a study that has seconds are told in both") {
+  ResultTable table = run_table({{"first_detected_at", false}, {"first_isolated_at", false}},
+                                {{81, 82}, {83, none}});
+  CHECK(titles(compared(table)) == Texts{"pipeline", "detected at k", "isolated at k"});
+  CHECK(texts(compared(table), 0) == Texts{"a", "81", "82"});
+  table.sampling_time = 5;
+  CHECK(titles(compared(table)) == Texts{"pipeline", "detected at k (s)", "isolated at k (s)"});
+  CHECK(texts(compared(table), 0) == Texts{"a", "81 (405)", "82 (410)"});
+  CHECK(texts(compared(table), 1) == Texts{"b", "83 (415)", "–"});
+}
+
 TEST_CASE("bounds of faults have a column each") {
   const ComparisonTable table = compared(run_table(
       {{"fault_1_half_width", false}, {"fault_12_half_width", false}, {"fault_1_rms_error", false}},

@@ -97,6 +97,29 @@ TEST_CASE("a sweep in one part is whole, and merged as such") {
   CHECK(sweeps::reproducible(scratch / "out") == sweeps::reproducible(whole));
 }
 
+TEST_CASE("the time of a step is known to sweeps and to what is merged, where no axis changes it") {
+  const Scratch scratch;
+  const auto merged_time = [&](const std::string& name, Study study) {
+    study.labels.sampling_time = 0.5;
+    nlohmann::ordered_json resolved = nlohmann::ordered_json::parse(study.resolved);
+    resolved["system"]["sampling_time"] = 0.5;
+    study.resolved = resolved.dump(2);
+    const double whole = sweeps::run(study, into(scratch / (name + " whole"))).table.sampling_time;
+    const fs::path part_of_one = part(scratch, name, study, {1, 1});
+    const double merged =
+        merge_sweeps({part_of_one}, scratch / (name + " out")).table.sampling_time;
+    CHECK(merged == whole);
+    CHECK(read_result_table(scratch / (name + " out")).sampling_time == whole);
+    return merged;
+  };
+  CHECK(merged_time("fixed", small()) == 0.5);
+  const std::string path = "/data/simulate/noise";
+  Study swept = small();
+  swept.sweep[0].path = "/system/sampling_time";
+  swept.resolved.replace(swept.resolved.find(path), path.size(), swept.sweep[0].path);
+  CHECK(merged_time("swept", swept) == 0);
+}
+
 TEST_CASE("an unfinished part is not merged, and no unfinished sweep is written over") {
   const Scratch scratch;
   const Study study = small();

@@ -95,11 +95,11 @@ class TableReader {
 void TableReader::read_results() {
   const std::filesystem::path file = files_.file("results.json");
   Problems problems;
-  Wanted wanted{
-      {"/cordon_results", "/cordon", "/tools", "/title", "/study_hash", "/measures", "/study/sweep",
-       "/pipelines/*/name", "/pipelines/*/numbers", "/pipelines/*/summary/error"},
-      {"/points/*"},
-      [this](const Cursor& at, const std::vector<std::size_t>&) { read_point(at); }};
+  Wanted wanted{{"/cordon_results", "/cordon", "/tools", "/title", "/study_hash", "/measures",
+                 "/study/sweep", "/study/system/sampling_time", "/pipelines/*/name",
+                 "/pipelines/*/numbers", "/pipelines/*/summary/error"},
+                {"/points/*"},
+                [this](const Cursor& at, const std::vector<std::size_t>&) { read_point(at); }};
   const Value tree = read_large(file, wanted, problems).tree;
   const Cursor root(tree, "", problems);
   if (expect_results(root)) {
@@ -109,6 +109,7 @@ void TableReader::read_results() {
     read_axes(root);
     read_pipelines(root);
     read_.table.measures = read_measures(root);
+    read_.table.sampling_time = common_sampling_time(sampling_time_of(root), read_.table.axes);
     if (!problems.any()) check_rows(root);
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());

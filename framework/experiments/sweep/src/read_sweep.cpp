@@ -6,6 +6,7 @@
 
 #include "experiments/sweep/sweep_files.hpp"
 #include "study/results/measures.hpp"
+#include "study/results/table_builder.hpp"
 #include "study/text/input_file.hpp"
 #include "study/text/json_writer.hpp"
 #include "study/text/manifest.hpp"
@@ -128,6 +129,7 @@ void read_names(const Cursor& root, SweepFiles& sweep) {
     sweep.limit_s = json::read_number(*limit).value_or(sweep.limit_s);
   const auto study = root.need("study", not_as_written);
   if (!study || study->is(Kind::null)) return;
+  sweep.study.labels.sampling_time = sampling_time_of(root);
   const auto axes =
       study->expect(Kind::object, not_as_written) ? study->find("sweep") : std::nullopt;
   for (std::size_t i = 0; axes && axes->expect(Kind::array, not_as_written) && i < axes->size();

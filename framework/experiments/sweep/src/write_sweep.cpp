@@ -8,6 +8,7 @@
 #include "study/results/metric_board.hpp"
 #include "study/results/results_parts.hpp"
 #include "study/results/summaries.hpp"
+#include "study/results/table_builder.hpp"
 #include "study/results/table_text.hpp"
 #include "study/text/atomic_directory.hpp"
 #include "study/text/host.hpp"
@@ -159,6 +160,7 @@ SweepHeads heads_of(const Study& study, const Registry& registry, const std::str
 ResultTable table_of(const SweepFiles& sweep) {
   ResultTable table = sweep.rows.table(sweep.study);
   table.measures = sweep.measures;
+  table.sampling_time = common_sampling_time(sweep.study.labels.sampling_time, table.axes);
   table.study_hash = sweep.study_hash;
   table.version = sweep.version;
   return table;

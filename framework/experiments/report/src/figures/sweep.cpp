@@ -292,7 +292,8 @@ ResultTable shown(ResultTable table) {
 }  // namespace
 
 void add_comparisons(const RunFiles& files, Report& report) {
-  const ResultTable table = shown(read_result_table(files.directory()));
+  ResultTable table = shown(read_result_table(files.directory()));
+  if (files.detail() == Detail::all) table.sampling_time = 0;  // seconds are for people
   const Summary summary = summarise(table);
   const ComparisonTable comparison = comparison_table(table, summary);
   const std::vector<Measure> measures = measures_of(table, comparison);

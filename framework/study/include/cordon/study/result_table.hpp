@@ -47,6 +47,7 @@ struct ResultTable {
   std::vector<ResultColumn> columns;   ///< those of any row, in the order of their first appearance
   std::vector<ResultRow> rows;         ///< by point
   std::vector<Measure> measures = {};  ///< what the metrics tell of their columns
+  double sampling_time = 0;  ///< seconds from k to k + 1; 0: not known, or not that of all points
 };
 
 /// Reads a finished run (one row per pipeline, no axes) or a finished sweep. Throws InputError.

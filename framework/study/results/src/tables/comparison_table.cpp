@@ -20,7 +20,12 @@ struct Column {
   std::size_t column;
   const Measure* measure;  ///< null: not described
   bool ranked = false, share = false;
+  double seconds = 0;  ///< of numbers that are times k: from k to k + 1; 0: not told
 };
+
+bool is_time(std::string_view name) {
+  return name == "first_detected_at" || name == "first_isolated_at";
+}
 
 /// Has the column a number in some row, and one that is worth a column?
 bool is_worth(const Summary& summary, const Column& shown) {
@@ -40,7 +45,9 @@ std::vector<Column> shown_columns(const ResultTable& table, const Summary& summa
   std::vector<Column> found;
   for (const std::size_t column : detail::compared_columns(table)) {
     const Measure* measure = measure_of(table, table.columns[column].name);
-    const Column shown{column, measure, measure && measure->ranked, measure && measure->share};
+    const bool time = is_time(table.columns[column].name);
+    const Column shown{column, measure, measure && measure->ranked, measure && measure->share,
+                       time ? table.sampling_time : 0};
     if (is_worth(summary, shown)) found.push_back(shown);
   }
   const std::size_t step = detail::column_of(table, "step_us"),
@@ -59,14 +66,17 @@ std::vector<Column> shown_columns(const ResultTable& table, const Summary& summa
 }
 
 /// "1.689 ± 0.012 (∞: 2) [40]": mean and deviation of the finite numbers; how many were infinite;
-/// how many there are, if fewer than the points that did not fail.
-std::string value_text(const SummaryRow& row, const Statistics& found, bool percent) {
+/// how many there are, if fewer than the points that did not fail. Of times "81 (405)", the second
+/// number in seconds.
+std::string value_text(const SummaryRow& row, const Statistics& found, const Column& shown) {
+  const bool percent = shown.share;
   const double scale = percent ? 100 : 1;
   const std::int64_t finished = row.points - row.failed;
   if (found.count == 0) return found.infinite > 0 ? "∞" : "–";
   std::string text = number_text(scale * found.mean);
   if (varies(found)) text += " ± " + number_text(scale * found.deviation, 2);
   if (percent) text += " %";
+  if (shown.seconds > 0) text += fmt::format(" ({})", number_text(shown.seconds * found.mean));
   if (found.infinite > 0) text += fmt::format(" (∞: {})", found.infinite);
   if (found.count + found.infinite < finished) text += fmt::format(" [{}]", found.count);
   return text;
@@ -121,7 +131,9 @@ ComparisonTable comparison_table(const ResultTable& table, const Summary& summar
                                     [](const SummaryRow& row) { return row.failed > 0; });
   for (const Column& s : shown) {
     const std::string& name = table.columns[s.column].name;
-    result.columns.push_back({detail::title_of(s.measure, name), name, true, false});
+    std::string title = detail::title_of(s.measure, name);
+    if (s.seconds > 0) title += " (s)";
+    result.columns.push_back({std::move(title), name, true, false});
     if (s.ranked && table.pipelines.size() > 1)
       result.columns.push_back({"× best", name, true, true});
   }
@@ -139,7 +151,7 @@ ComparisonTable comparison_table(const ResultTable& table, const Summary& summar
       const std::vector<bool> best = detail::best_of(table, rows, s.column);
       for (std::size_t i = 0; i < rows.size(); ++i) {
         const Statistics& found = rows[i].columns[s.column];
-        std::string text = value_text(rows[i], found, s.share);
+        std::string text = value_text(rows[i], found, s);
         if (found.count == rows[i].points && !detail::is_comparable(table, rows[i], s.column))
           text += " †";
         result.rows[first + i].push_back({std::move(text), best[i]});

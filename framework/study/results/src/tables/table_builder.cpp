@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/results/table_builder.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -35,10 +36,29 @@ void TableBuilder::finish() {
     row.values.resize(table_.columns.size(), std::numeric_limits<double>::quiet_NaN());
 }
 
+double sampling_time_of(const json::Cursor& results) {
+  using Kind = json::Value::Kind;
+  const auto study = results.find("study");
+  const auto system = study && study->is(Kind::object) ? study->find("system") : std::nullopt;
+  const auto time =
+      system && system->is(Kind::object) ? system->find("sampling_time") : std::nullopt;
+  if (!time || !time->is(Kind::number)) return 0;
+  const double seconds = json::read_number(*time).value_or(0);
+  return seconds > 0 ? seconds : 0;
+}
+
+double common_sampling_time(double of_study, const std::vector<SweepAxis>& axes) {
+  const bool changes = std::any_of(axes.begin(), axes.end(), [](const SweepAxis& axis) {
+    return axis.path == "/system" || axis.path == "/system/sampling_time";
+  });
+  return changes ? 0 : of_study;
+}
+
 ResultTable table_of(const Study& study, const RunOutcome& outcome) {
   ResultTable table;
   table.title = study.title;
   table.measures = outcome.measures;
+  table.sampling_time = study.labels.sampling_time;
   table.study_hash = fingerprint(study.resolved);
   table.version = build_info().version;
   TableBuilder builder(table);

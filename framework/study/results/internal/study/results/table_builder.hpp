@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "cordon/study/result_table.hpp"
+#include "study/text/json_cursor.hpp"
 
 namespace cordon::detail {
 
@@ -27,6 +28,12 @@ class TableBuilder {
   ResultTable& table_;
   std::unordered_map<std::string, std::size_t> known_;
 };
+
+/// Of the study in results.json, in seconds; 0: it tells none.
+double sampling_time_of(const json::Cursor& results);
+
+/// What a study tells of the time of a step, if no axis changes it; else 0.
+double common_sampling_time(double of_study, const std::vector<SweepAxis>& axes);
 
 /// The table of a run: one row per pipeline, no axes.
 ResultTable table_of(const Study& study, const RunOutcome& outcome);
