@@ -269,6 +269,26 @@ TEST_CASE("metrics: columns with numbers, logarithmic over powers of ten, and th
 
 TEST_CASE("long runs: the page holds few points and every extreme, all of them on demand") {
   const ResultsFiles files;
+TEST_CASE("metrics: units, where all states share one and are not weighed") {
+  const auto labels = [](const std::string& names, const std::string& metrics = "") {
+    const ResultsFiles files;
+    files.replace("results.json", R"("system": {"modes": []})",
+                  R"("system": {"modes": [], "names": {"states": [)" + names +
+                      R"(]}}, "metrics": [)" + metrics + "]");
+    const Report report = read_report(files.path());
+    return std::pair(plot(report, "metric_1").y_label, plot(report, "metric_2").y_label);
+  };
+  using Labels = std::pair<std::string, std::string>;
+  CHECK(labels(R"("a [m]", "b [m]")") == Labels{"radius [m]", "volume [m²]"});
+  CHECK(labels(R"("a [m/s]", "b [m/s]")") == Labels{"radius [m/s]", "volume [(m/s)²]"});
+  CHECK(labels(R"("a [m]", "b [s]")") == Labels{"radius", "volume"});
+  CHECK(labels(R"("a", "b")") == Labels{"radius", "volume"});
+  CHECK(labels(R"("a [m]", "b [m]")", R"({"type": "radius", "scales": [1, 2]})") ==
+        Labels{"radius", "volume [m²]"});
+  const ResultsFiles files;
+  CHECK(plot(read_report(files.path()), "step_time").y_label == "time per step [µs]");
+}
+
   std::string rows = "pipeline,k,consistent,tightness,lower_1,upper_1,radius\n";
   for (int k = 0; k < 20'000; ++k) {
     rows.append("a,")

@@ -31,15 +31,16 @@ std::string axes() {
       nlohmann::json axis{
           {"lower", lower}, {"upper", upper}, {"digits", digits_within(lower, upper)}};
       for (const int count : {3, 6, 9})
-        axis["ticks"].push_back(
-            {count, nice_ticks(lower, upper, count), nice_ticks(lower, upper, count, true)});
+        axis["ticks"].push_back({count, nice_ticks(lower, upper, count),
+                                 nice_ticks(lower, upper, count, true),
+                                 upright_ticks(lower, upper, count)});
       for (const double tick : nice_ticks(lower, upper, 6))
         axis["texts"].push_back(
             {tick, short_text(tick, digits_within(lower, upper)), short_text(tick / 3)});
       if (lower > 0) {
         axis["log_ticks"] = log_ticks(lower, upper);
         for (const double tick : log_ticks(lower, upper))
-          axis["log_texts"].push_back({tick, log_text(tick)});
+          axis["log_texts"].push_back({tick, log_text(tick, has_powers(lower, upper))});
       }
       all.push_back(std::move(axis));
     }

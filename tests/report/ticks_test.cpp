@@ -126,13 +126,41 @@ TEST_CASE("an axis far from the origin tells its values apart") {
   CHECK(holds);
 }
 
-TEST_CASE("a logarithmic axis names its powers") {
-  CHECK(log_text(1) == "1");
-  CHECK(log_text(100) == "100");
-  CHECK(log_text(1000) == "10³");
-  CHECK(log_text(0.01) == "0.01");
-  CHECK(log_text(1e-3) == "10⁻³");
-  CHECK(log_text(2000) == "2000");
-  CHECK((Axis{1, 1e4, 0, 1, true}).text(1e4) == "10⁴");
+TEST_CASE("a logarithmic axis writes all its numbers in one way") {
+  CHECK(log_text(1, false) == "1");
+  CHECK(log_text(0.002, false) == "0.002");
+  CHECK(log_text(1, true) == "10⁰");
+  CHECK(log_text(100, true) == "10²");
+  CHECK(log_text(1e-3, true) == "10⁻³");
+  CHECK(log_text(0.002, true) == "2·10⁻³");
+  CHECK(log_text(2000, true) == "2·10³");
+  const auto texts = [](double lower, double upper) {
+    const Axis axis{lower, upper, 0, 1, true};
+    std::vector<std::string> found;
+    for (const double tick : axis.ticks(6)) found.push_back(axis.text(tick));
+    return found;
+  };
+  using Texts = std::vector<std::string>;
+  CHECK(texts(0.9e-3, 11) == Texts{"0.001", "0.01", "0.1", "1", "10"});
+  CHECK(texts(9e-5, 0.3) == Texts{"10⁻⁴", "10⁻³", "10⁻²", "10⁻¹"});
+  CHECK(texts(1e2, 1e5) ==
+        Texts{"10²", "2·10²", "5·10²", "10³", "2·10³", "5·10³", "10⁴", "2·10⁴", "5·10⁴", "10⁵"});
   CHECK((Axis{1, 1e4, 0, 1}).text(1e4) == "10000");
+}
+
+TEST_CASE("an upright axis has three ticks where there is room for them") {
+  CHECK(nice_ticks(-0.1, 1.2, 3) == Ticks{0, 0.5, 1});
+  CHECK(nice_ticks(0.1, 1.34, 6) == Ticks{0.5, 1});
+  CHECK(upright_ticks(0.1, 1.34, 6) == Ticks{0.2, 0.4, 0.6, 0.8, 1, 1.2});
+  CHECK(upright_ticks(0.1, 1.34, 2) == nice_ticks(0.1, 1.34, 2));
+  CHECK(log_ticks(3, 8) == Ticks{4, 6, 8});
+  const bool holds = rc::check("ticks", [] {
+    const double lower = *rc::gen::inRange(-1000000, 1000000) * 1e-3;
+    const double span = std::pow(10.0, *rc::gen::inRange(-4, 9)) * *rc::gen::inRange(1, 100);
+    const int count = *rc::gen::inRange(3, 8);
+    const std::size_t ticks = upright_ticks(lower, lower + span, count).size();
+    RC_ASSERT(ticks >= 3);
+    RC_ASSERT(static_cast<int>(ticks) <= 2 * count + 1);
+  });
+  CHECK(holds);
 }

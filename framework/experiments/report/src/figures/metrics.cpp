@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/report/ticks.hpp"
 #include "figures/figures.hpp"
 
 namespace cordon::report {
@@ -38,6 +39,44 @@ std::string title_of(const std::string& column) {
   return title;
 }
 
+/// Of all states; empty: they have none, or not the same.
+std::string common_unit(const Labels::Names& states) {
+  const std::string unit = states.empty() ? "" : unit_of(states.front());
+  const bool same = std::all_of(states.begin(), states.end(),
+                                [&](const std::string& state) { return unit_of(state) == unit; });
+  return same ? unit : "";
+}
+
+/// Does the study weigh the states in this metric, so that it has no unit of theirs?
+bool weighs_states(const RunFiles& files) {
+  const auto study = object_of(files.root(), "study");
+  if (!study) return false;
+  for (const json::Cursor& metric : items_of(*study, "metrics")) {
+    if (!metric.is(json::Value::Kind::object)) continue;
+    if (metric.find("scales") || metric.find("weight")) return true;
+  }
+  return false;
+}
+
+/// "m³", "(m/s)²".
+std::string power_of(const std::string& unit, std::size_t exponent) {
+  if (exponent == 1) return unit;
+  const bool simple = std::all_of(unit.begin(), unit.end(), [](unsigned char c) {
+    return c >= 0x80 || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+  });
+  return (simple ? unit : "(" + unit + ")") + superscript(static_cast<int>(exponent));
+}
+
+/// The metric's name with its unit, where that is known.
+std::string labelled(const RunFiles& files, const Curves& curves, const std::string& column) {
+  if (column == "step_time_us") return column + " [µs]";
+  const std::string unit = common_unit(files.labels().states);
+  if (unit.empty()) return column;
+  if (column == "volume") return column + " [" + power_of(unit, curves.all_states) + "]";
+  const bool length = column == "radius" || column == "w_radius" || column == "f_w_radius";
+  return length && !weighs_states(files) ? column + " [" + unit + "]" : column;
+}
+
 void add(Report& report, std::string id, std::string title, std::string caption, Plot plot) {
   if (plot.series.empty()) return;
   report.figures.push_back(
@@ -52,7 +91,7 @@ void add_metrics(const RunFiles& files, const Curves& curves, Report& report) {
     for (std::size_t p = 0; p < curves.pipelines.size(); ++p) {
       values.push_back({&curves.pipelines[p].metrics[i], static_cast<int>(p)});
     }
-    Plot plot = plot_of(files, values, curves.metrics[i]);
+    Plot plot = plot_of(files, values, labelled(files, curves, curves.metrics[i]));
     for (const PlantEvent& event : curves.events)
       plot.marks.push_back({static_cast<double>(event.k), event.text});
     add(report, fmt::format("metric_{}", i + 1), title_of(curves.metrics[i]),
@@ -63,7 +102,7 @@ void add_metrics(const RunFiles& files, const Curves& curves, Report& report) {
     times.push_back({&files.step_times()[p], static_cast<int>(p)});
   add(report, "step_time", "Time of a step",
       "Measured on the machine of this run: it differs from run to run.",
-      plot_of(files, times, "µs"));
+      plot_of(files, times, "time per step [µs]"));
 }
 
 }  // namespace cordon::report

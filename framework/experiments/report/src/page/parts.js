@@ -70,7 +70,12 @@ function niceTicks(lower, upper, count = 6, whole = false) {
   }
   return ticks;
 }
-/** Powers of ten within [lower, upper]; with 2 and 5 between them where they are few. */
+/** The same, closer where there would be fewer than three although there is room for as many. */
+function uprightTicks(lower, upper, count = 6) {
+  const ticks = niceTicks(lower, upper, count);
+  return ticks.length < 3 && count >= 3 ? niceTicks(lower, upper, 2 * count) : ticks;
+}
+/** Powers of ten within [lower, upper]; with 2 and 5 between them where they are few; round numbers where these are fewer than three. */
 function logTicks(lower, upper) {
   const first = Math.floor(Math.log10(lower) + 1e-9), last = Math.ceil(Math.log10(upper) - 1e-9);
   const every = Math.max(1, Math.ceil((last - first) / 8));
@@ -78,7 +83,8 @@ function logTicks(lower, upper) {
   for (let power = first; power <= last; power += every) {
     for (const factor of last - first <= 3 ? [1, 2, 5] : [1]) ticks.push(Number((factor * 10 ** power).toPrecision(12)));
   }
-  return ticks.filter((tick) => tick >= lower * (1 - 1e-9) && tick <= upper * (1 + 1e-9));
+  const within = ticks.filter((tick) => tick >= lower * (1 - 1e-9) && tick <= upper * (1 + 1e-9));
+  return within.length < 3 ? uprightTicks(lower, upper, 4) : within;
 }
 
 const superscripts = { '-': '⁻', 0: '⁰', 1: '¹', 2: '²', 3: '³', 4: '⁴', 5: '⁵', 6: '⁶', 7: '⁷', 8: '⁸', 9: '⁹' };
@@ -103,11 +109,17 @@ function digitsWithin(lower, upper) {
   return Number.isFinite(size) && size > 0 ? Math.min(15, Math.max(6, Math.ceil(Math.log10(size)) + 4)) : 6;
 }
 
-/** A number on a logarithmic axis: powers of ten as such, but for a few. */
-function logText(value) {
-  const power = Math.round(Math.log10(value));
-  if (Math.abs(power) < 3 || Math.abs(value / 10 ** power - 1) > 1e-9) return short(value);
-  return `10${[...String(power)].map((c) => superscripts[c]).join('')}`;
+/** Are numbers of a logarithmic axis written with powers of ten? So they are, all of them, if a tick lies outside of [0.001, 10000]. */
+function hasPowers(lower, upper) {
+  const ticks = logTicks(lower, upper);
+  return ticks[0] < 1e-3 || ticks.at(-1) > 1e4;
+}
+/** A number on a logarithmic axis: "0.002", or "2·10⁻³" with powers of ten, also where it is 1. */
+function logText(value, powers) {
+  if (!powers) return short(value);
+  const power = Math.floor(Math.log10(value) + 1e-9);
+  const factor = short(value / 10 ** power), ten = `10${[...String(power)].map((c) => superscripts[c]).join('')}`;
+  return factor === '1' ? ten : `${factor}·${ten}`;
 }
 
 /** The numbers of the page's data: infinite ones are words there, gaps are null. */

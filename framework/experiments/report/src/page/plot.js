@@ -151,8 +151,8 @@ function plotScales(plot) {
     },
     y: {
       type: plot.log_y ? 'logarithmic' : 'linear', min: lower, max: upper, grid, title: title(plot.y_label),
-      ticks: { ...ticks, autoSkip: false, callback: (value) => (plot.log_y ? logText(value) : short(value, digitsWithin(lower, upper))) },
-      afterBuildTicks: setTicks(() => (plot.log_y ? logTicks(lower, upper) : niceTicks(lower, upper, 6))),
+      ticks: { ...ticks, autoSkip: false, callback: (value) => (plot.log_y ? logText(value, hasPowers(lower, upper)) : short(value, digitsWithin(lower, upper))) },
+      afterBuildTicks: setTicks(() => (plot.log_y ? logTicks(lower, upper) : uprightTicks(lower, upper, 6))),
     },
   };
 }

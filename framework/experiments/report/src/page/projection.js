@@ -11,7 +11,7 @@ function stageAxes(projection, frame) {
   const across = (value) => short(value, digitsWithin(frame.left, frame.right));
   const upwards = (value) => short(value, digitsWithin(frame.bottom, frame.top));
   const xLabel = 7 * Math.max(across(frame.left).length, across(frame.right).length);
-  const yTicks = niceTicks(frame.bottom, frame.top, 6);
+  const yTicks = uprightTicks(frame.bottom, frame.top, 6);
   const left = 22 + 7 * Math.max(5, ...yTicks.map((tick) => upwards(tick).length));
   const x = (value) => left + ((value - frame.left) / (frame.right - frame.left)) * (right - left);
   const y = (value) => bottom - ((value - frame.bottom) / (frame.top - frame.bottom)) * (bottom - stageMargin.top);

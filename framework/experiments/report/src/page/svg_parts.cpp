@@ -66,7 +66,7 @@ std::string_view name_of(Timeline::State state) {
 namespace {
 
 std::vector<double> ticks_of_y(const Axis& y) {
-  return y.ticks(static_cast<int>((y.begin - y.end) / 45));
+  return y.upright(static_cast<int>((y.begin - y.end) / 45));
 }
 
 }  // namespace

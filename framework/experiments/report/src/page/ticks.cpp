@@ -16,16 +16,16 @@ namespace {
 /// Without the noise of 3 · 0.1.
 double clean(double value) { return std::strtod(fmt::format("{:.14g}", value).c_str(), nullptr); }
 
-std::string superscript(int exponent) {
+}  // namespace
+
+std::string superscript(int number) {
   constexpr std::array<std::string_view, 10> digits = {"⁰", "¹", "²", "³", "⁴",
                                                        "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string out;
-  for (const char c : std::to_string(exponent))
+  for (const char c : std::to_string(number))
     out += c == '-' ? "⁻" : digits[static_cast<std::size_t>(c - '0')];
   return out;
 }
-
-}  // namespace
 
 std::vector<double> nice_ticks(double lower, double upper, int count, bool whole) {
   const double rough = (upper - lower) / std::max(1, count);
@@ -46,6 +46,11 @@ std::vector<double> nice_ticks(double lower, double upper, int count, bool whole
   return ticks;
 }
 
+std::vector<double> upright_ticks(double lower, double upper, int count) {
+  std::vector<double> ticks = nice_ticks(lower, upper, count);
+  return ticks.size() < 3 && count >= 3 ? nice_ticks(lower, upper, 2 * count) : ticks;
+}
+
 std::vector<double> log_ticks(double lower, double upper) {
   const int first = static_cast<int>(std::floor(std::log10(lower) + 1e-9)),
             last = static_cast<int>(std::ceil(std::log10(upper) - 1e-9));
@@ -58,7 +63,12 @@ std::vector<double> log_ticks(double lower, double upper) {
       if (wanted && tick >= lower * (1 - 1e-9) && tick <= upper * (1 + 1e-9)) ticks.push_back(tick);
     }
   }
-  return ticks;
+  return ticks.size() < 3 ? upright_ticks(lower, upper, 4) : ticks;
+}
+
+bool has_powers(double lower, double upper) {
+  const std::vector<double> ticks = log_ticks(lower, upper);
+  return !ticks.empty() && (ticks.front() < 1e-3 || ticks.back() > 1e4);
 }
 
 std::string short_text(double value, int digits) {
@@ -90,11 +100,12 @@ int digits_within(double lower, double upper) {
              : 6;
 }
 
-std::string log_text(double value) {
-  const double power = std::round(std::log10(value));
-  if (std::abs(power) < 3 || std::abs(value / std::pow(10.0, power) - 1) > 1e-9)
-    return short_text(value);
-  return "10" + superscript(static_cast<int>(power));
+std::string log_text(double value, bool powers) {
+  if (!powers) return short_text(value);
+  const double power = std::floor(std::log10(value) + 1e-9);
+  const std::string factor = short_text(value / std::pow(10.0, power)),
+                    ten = "10" + superscript(static_cast<int>(power));
+  return factor == "1" ? ten : factor + "·" + ten;
 }
 
 double Axis::operator()(double value) const {

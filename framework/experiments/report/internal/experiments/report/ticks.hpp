@@ -12,9 +12,15 @@ namespace cordon::report {
 /// them.
 std::vector<double> nice_ticks(double lower, double upper, int count, bool whole = false);
 
-/// Powers of ten within [lower, upper], with 2 and 5 between them over three decades or less. Both
-/// bounds are positive.
+/// The same, closer where there would be fewer than three although there is room for as many.
+std::vector<double> upright_ticks(double lower, double upper, int count);
+
+/// Powers of ten within [lower, upper], with 2 and 5 between them over three decades or less; round
+/// numbers where these would be fewer than three. Both bounds are positive.
 std::vector<double> log_ticks(double lower, double upper);
+
+/// "⁻³".
+std::string superscript(int number);
 
 /// A number with at most `digits` digits, with a power of ten where it is very large or small; ∞
 /// and − as they are printed.
@@ -23,8 +29,12 @@ std::string short_text(double value, int digits = 6);
 /// The digits, from 6 to 15, that tell values of [lower, upper] apart, also far from the origin.
 int digits_within(double lower, double upper);
 
-/// The same on a logarithmic axis: powers of ten as such, but for a few.
-std::string log_text(double value);
+/// Are numbers of a logarithmic axis written with powers of ten? So they are, all of them, if a
+/// tick lies outside of [0.001, 10000].
+bool has_powers(double lower, double upper);
+
+/// A number on a logarithmic axis: "0.002", or "2·10⁻³" with powers of ten, also where it is 1.
+std::string log_text(double value, bool powers);
 
 /// A value of an axis as a place in a drawing.
 struct Axis {
@@ -37,9 +47,13 @@ struct Axis {
   std::vector<double> ticks(int count, bool whole = false) const {
     return log ? log_ticks(lower, upper) : nice_ticks(lower, upper, count, whole);
   }
+  std::vector<double> upright(int count) const {
+    return log ? log_ticks(lower, upper) : upright_ticks(lower, upper, count);
+  }
   /// A tick, or a value between the ticks.
   std::string text(double value) const {
-    return log ? log_text(value) : short_text(value, digits_within(lower, upper));
+    return log ? log_text(value, has_powers(lower, upper))
+               : short_text(value, digits_within(lower, upper));
   }
 };
 
