@@ -128,6 +128,13 @@ TEST_CASE("curves in the page") {
   CHECK(figures[5]["plot"]["x_names"] == Json({"10", "20", "30"}));
 }
 
+TEST_CASE("small marks in the page") {
+  Report report = sample::every_kind();
+  std::get<Plot>(report.figures[1].content).marks = {{7, "begun anew", 1, true}};
+  CHECK(data_of(report)["figures"][1]["plot"]["marks"][0] ==
+        Json::parse(R"({"x":7,"text":"begun anew","pipeline":1,"small":true})"));
+}
+
 TEST_CASE("sets in the page") {
   const Json projection = data_of(sample::every_kind())["figures"][4]["projection"];
   REQUIRE(projection["frames"].size() == 12);

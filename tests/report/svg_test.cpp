@@ -1,76 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/report/svg.hpp"
 
-#include <sstream>
-
-#include <boost/property_tree/ptree.hpp>
-#include <boost/property_tree/xml_parser.hpp>
 #include <doctest/doctest.h>
 
 #include "experiments/report/drawing.hpp"
 #include "report/sample_reports.hpp"
+#include "report/svg_tree.hpp"
 
 using namespace cordon::report;
-
-namespace {
-
-using Tree = boost::property_tree::ptree;
-
-/// The drawing as a tree; throws if it is no XML.
-Tree parsed(const std::string& svg) {
-  std::istringstream stream(svg);
-  Tree tree;
-  boost::property_tree::read_xml(stream, tree);
-  return tree;
-}
-
-void collect(const Tree& tree, const std::string& name, std::vector<const Tree*>& found) {
-  for (const auto& [tag, child] : tree) {
-    if (tag == name) found.push_back(&child);
-    collect(child, name, found);
-  }
-}
-
-std::vector<const Tree*> elements(const Tree& tree, const std::string& name) {
-  std::vector<const Tree*> found;
-  collect(tree, name, found);
-  return found;
-}
-
-std::string attribute(const Tree& element, const std::string& name) {
-  return element.get("<xmlattr>." + name, "");
-}
-
-std::vector<std::string> texts(const Tree& tree) {
-  std::vector<std::string> out;
-  for (const Tree* text : elements(tree, "text")) out.push_back(text->data());
-  return out;
-}
-
-bool has_text(const Tree& tree, const std::string& text) {
-  const std::vector<std::string> all = texts(tree);
-  return std::find(all.begin(), all.end(), text) != all.end();
-}
-
-Tree drawn(const Figure& figure, const Report& report) { return parsed(svg_of(figure, report)); }
-
-Tree drawn(decltype(Figure::content) content) {
-  Report report = sample::every_kind();
-  return drawn({"figure", "section", "title", "", std::move(content)}, report);
-}
-
-std::vector<Point> points_of(const Tree& element) {
-  std::istringstream stream(attribute(element, "points"));
-  std::vector<Point> points;
-  Point point;
-  char comma;
-  while (stream >> point.first >> comma >> point.second) points.push_back(point);
-  return points;
-}
-
-std::vector<const Tree*> drawn_curves(const Tree& tree) { return elements(tree, "polyline"); }
-
-}  // namespace
+using namespace svg_tree;
 
 TEST_CASE("every kind of figure is XML with its title") {
   const Report report = sample::every_kind();
@@ -249,19 +187,6 @@ TEST_CASE("words stand in place of numbers") {
   CHECK(elements(tree, "circle").size() == 3);  // one of them in the legend
 }
 
-TEST_CASE("thresholds have their names, and marks theirs where they do not cover each other") {
-  Plot plot{"k", "y", false, {{Series::Kind::line, "a", 0, {0, 100}, {0, 1}}}};
-  plot.thresholds = {{"bound", 0.5}, {"at infinity", cordon::infinity}};
-  for (int i = 0; i < 5; ++i) plot.marks.push_back({50, "something happens " + std::to_string(i)});
-  plot.marks.push_back({200, "outside"});
-  const Tree tree = drawn(plot);
-  CHECK(has_text(tree, "bound"));
-  CHECK_FALSE(has_text(tree, "at infinity"));
-  for (int i = 0; i < 5; ++i)
-    CHECK(has_text(tree, "something happens " + std::to_string(i)) == (i < 3));
-  CHECK_FALSE(has_text(tree, "outside"));
-}
-
 TEST_CASE("pipelines beyond the number of colours are dashed") {
   Plot plot = sample::plot(10, 5, false);
   const Tree tree = drawn(plot);
@@ -311,59 +236,6 @@ TEST_CASE("sets that are points or segments are drawn") {
   for (const Tree* line : elements(tree, "line"))
     edges += attribute(*line, "stroke-linecap") == "round";
   CHECK(edges == 1);
-}
-
-TEST_CASE("a timeline has a bar per span, from half a step before to half a step after") {
-  Timeline timeline{{"only"},
-                    {{0, 0, 3, Timeline::State::candidate},
-                     {0, 4, 4, Timeline::State::excluded},
-                     {0, 0, 4, Timeline::State::truth}},
-                    {}};
-  const Tree tree = drawn(timeline);
-  std::vector<const Tree*> bars;
-  for (const Tree* bar : elements(tree, "rect")) {
-    if (std::stod(attribute(*bar, "height")) == 15) bars.push_back(bar);
-  }
-  REQUIRE(bars.size() == 2);
-  CHECK(std::stod(attribute(*bars[0], "width")) ==
-        doctest::Approx(4 * std::stod(attribute(*bars[1], "width"))).epsilon(0.01));
-  for (const std::string text : {"only", "possible", "excluded", "true mode", "k"})
-    CHECK(has_text(tree, text));
-  CHECK_FALSE(has_text(tree, "monitored"));
-}
-
-TEST_CASE("intervals show their ends, a gap where there is one, and the verdict") {
-  const Tree tree = drawn(sample::intervals());
-  for (const std::string text : {"model 1  [−1.25, 0.5]", "model 2  [0.75, 3]", "model 1  [−∞, 2]",
-                                 "proven disjoint", "overlap"}) {
-    CHECK(has_text(tree, text));
-  }
-  std::size_t gaps = 0;
-  for (const Tree* bar : elements(tree, "rect")) gaps += attribute(*bar, "fill") == "#009e73";
-  CHECK(gaps == 1);
-}
-
-TEST_CASE("a table has all its cells, the best ones bold and shaded") {
-  const Tree tree = drawn(sample::table());
-  CHECK(elements(tree, "text").size() == 12);
-  std::size_t bold = 0, shaded = 0;
-  for (const Tree* text : elements(tree, "text")) bold += attribute(*text, "font-weight") == "bold";
-  for (const Tree* rectangle : elements(tree, "rect"))
-    shaded += attribute(*rectangle, "fill") == "#0072b2";
-  CHECK(bold == 1);
-  CHECK(shaded == 2);
-}
-
-TEST_CASE("a long cell of a table is broken, not cut") {
-  std::string text;
-  for (int i = 0; i < 30; ++i) text += (i > 0 ? " × " : "") + std::string("[-0.1717, 0.25]");
-  const Tree tree = drawn(Table{{"residual", "holds"}, {{{text}, {"yes"}}, {{"none"}, {"no"}}}});
-  std::string shown;
-  for (const std::string& line : texts(tree)) shown += line + ' ';
-  CHECK(shown.find("…") == std::string::npos);
-  std::size_t boxes = 0;
-  for (std::size_t at = 0; (at = shown.find("[-0.1717,", at)) != std::string::npos; ++at) ++boxes;
-  CHECK(boxes == 30);
 }
 
 TEST_CASE("a plot whose range is given is cut off there") {

@@ -125,8 +125,9 @@ void write(JsonWriter& json, const Plot& plot) {
     json.begin_object()
         .member("x", mark.x)
         .member("text", mark.text)
-        .member("pipeline", mark.pipeline)
-        .end_object();
+        .member("pipeline", mark.pipeline);
+    if (mark.small) json.member("small", true);
+    json.end_object();
   }
   json.end_array().end_object();
 }

@@ -47,8 +47,11 @@ function swatch(pipeline, shade = 0, kind = 'line') {
   const stroke = colourOf(pipeline, shade);
   if (kind === 'band') {
     svg.append(drawn('rect', { x: 1, y: 2, width: 24, height: 8, fill: stroke, 'fill-opacity': 0.3, stroke, 'stroke-opacity': 0.6 }));
+  } else if (kind === 'triangle') {
+    svg.append(drawn('polygon', { points: '8,11 18,11 13,2', fill: stroke }));
   } else if (kind === 'points') {
-    svg.append(drawn('circle', { cx: 13, cy: 6, r: 4, fill: stroke }));
+    const square = markerOf(pipeline, shade) === 'rect';
+    svg.append(square ? drawn('rect', { x: 9.5, y: 2.5, width: 7, height: 7, fill: stroke }) : drawn('circle', { cx: 13, cy: 6, r: 4, fill: stroke }));
   } else {
     svg.append(drawn('line', { x1: 1, x2: 25, y1: 6, y2: 6, stroke, 'stroke-width': 3, 'stroke-dasharray': dashOf(pipeline, shade).join(' ') || undefined }));
   }

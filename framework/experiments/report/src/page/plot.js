@@ -70,18 +70,61 @@ function datasetsOf(series, range, log) {
   ];
 }
 
-/** Texts of vertical lines in at most three rows above the chart, where they do not cover each other; others are left out there. */
-function placeMarks(marks, at, width) {
-  const rows = [];
-  return marks.map((mark) => {
-    const centre = at(mark.x), half = width(mark.text) / 2 + 4;
-    for (let row = 0; row < 3; ++row) {
-      if ((rows[row] ?? -Infinity) > centre - half) continue;
-      rows[row] = centre + half;
-      return { mark, row };
-    }
-    return { mark, row: null };
+/** Texts of vertical lines in at most three rows above the chart: two that would cover each other stand on both sides of their lines, or in two rows; one without room is left out. */
+function placeMarks(marks, at, width, left, right) {
+  const used = [-Infinity, -Infinity, -Infinity];
+  const wide = (i) => width(marks[i].text) + 8;
+  const fitsRightOf = (i) => at(marks[i].x) + 3 + wide(i) <= right;
+  const isNear = (i, next) => {
+    if (next >= marks.length) return false;
+    const apart = at(marks[next].x) - at(marks[i].x);
+    return apart > 0.5 && apart < (wide(i) + wide(next)) / 2;
+  };
+  const rowFrom = (place) => {
+    const row = used.findIndex((end) => end <= place);
+    return row < 0 ? null : row;
+  };
+  let leftRow = null;  // of the text before, where it stands left of its line
+  const place = (i) => {
+    const line = at(marks[i].x), before = leftRow, half = wide(i) / 2;
+    leftRow = null;
+    if (before !== null && fitsRightOf(i)) return { row: before, centre: line + 3 + half };
+    if (isNear(i, i + 1) && line - 3 - 2 * half >= left && fitsRightOf(i + 1)) leftRow = rowFrom(line - 3 - 2 * half);
+    if (leftRow !== null) return { row: leftRow, centre: line - 3 - half };
+    const centre = Math.min(Math.max(line, left + half), Math.max(left + half, right - half));
+    return { row: rowFrom(centre - half), centre };
+  };
+  return marks.map((mark, i) => {
+    const { row, centre } = place(i);
+    if (row !== null) used[row] = centre + wide(i) / 2;
+    return { mark, row, centre };
   });
+}
+
+/** Small marks: triangles at the lower edge, those of every pipeline above those of the one before. */
+function drawTriangles(ctx, marks, x, bottom) {
+  const pipelines = [...new Set(marks.map((mark) => mark.pipeline))];
+  for (const mark of marks) {
+    const y = bottom - 8 * pipelines.indexOf(mark.pipeline), at = x(mark.x);
+    ctx.fillStyle = colourOf(mark.pipeline);
+    ctx.beginPath();
+    ctx.moveTo(at - 4, y);
+    ctx.lineTo(at + 4, y);
+    ctx.lineTo(at, y - 8);
+    ctx.fill();
+  }
+}
+
+/** A text that curves and lines do not cross. */
+function haloText(ctx, text, x, y) {
+  ctx.save();
+  ctx.setLineDash([]);
+  ctx.lineWidth = 3;
+  ctx.lineJoin = 'round';
+  ctx.strokeStyle = variable('--card');
+  ctx.strokeText(text, x, y);
+  ctx.restore();
+  ctx.fillText(text, x, y);
 }
 
 /** Thresholds and marks, over the curves. */
@@ -102,25 +145,26 @@ const linesPlugin = {
       ctx.lineTo(area.right, y);
       ctx.stroke();
       ctx.textAlign = 'right';
-      ctx.fillText(name, area.right - 4, y < area.top + 16 ? y + 12 : y - 4);
+      haloText(ctx, name, area.right - 4, y < area.top + 16 ? y + 12 : y - 4);
     }
     ctx.setLineDash([3, 3]);
-    const marks = plot.marks.filter((mark) => isShown(mark.pipeline)).sort((a, b) => a.x - b.x);
-    const placed = placeMarks(marks, (x) => scales.x.getPixelForValue(x), (text) => ctx.measureText(text).width);
+    const at = (x) => scales.x.getPixelForValue(x);
+    const isInside = (mark) => isShown(mark.pipeline) && at(mark.x) >= area.left - 1 && at(mark.x) <= area.right + 1;
+    const marks = plot.marks.filter(isInside).sort((a, b) => a.x - b.x);
+    drawTriangles(ctx, marks.filter((mark) => mark.small), at, area.bottom);
+    const placed = placeMarks(marks.filter((mark) => !mark.small), at, (text) => ctx.measureText(text).width, 0, chart.width);
     for (const { mark, row } of placed) {
-      const x = scales.x.getPixelForValue(mark.x);
-      if (x < area.left - 1 || x > area.right + 1) continue;
       ctx.strokeStyle = colourOf(mark.pipeline, 0, 0.7);
-      ctx.fillStyle = mark.pipeline === ofData ? variable('--soft') : colourOf(mark.pipeline);
-      const top = row === null ? area.top : area.top - 6 - 13 * row;
       ctx.beginPath();
-      ctx.moveTo(x, top);
-      ctx.lineTo(x, area.bottom);
+      ctx.moveTo(at(mark.x), row === null ? area.top : area.top - 6 - 13 * row);
+      ctx.lineTo(at(mark.x), area.bottom);
       ctx.stroke();
+    }
+    ctx.textAlign = 'center';
+    for (const { mark, row, centre } of placed) {
       if (row === null) continue;
-      const half = ctx.measureText(mark.text).width / 2;
-      ctx.textAlign = 'center';
-      ctx.fillText(mark.text, Math.min(Math.max(x, half), chart.width - half), top - 2);
+      ctx.fillStyle = mark.pipeline === ofData ? variable('--soft') : colourOf(mark.pipeline);
+      haloText(ctx, mark.text, centre, area.top - 8 - 13 * row);
     }
     ctx.restore();
   },
@@ -160,7 +204,7 @@ function plotScales(plot) {
 function plotOptions(plot) {
   return {
     animation: false, responsive: true, maintainAspectRatio: false, parsing: false, spanGaps: false, resizeDelay: 60,
-    layout: { padding: { top: plot.marks.length > 0 ? 46 : 6, right: 10 } },
+    layout: { padding: { top: plot.marks.some((mark) => !mark.small) ? 46 : 6, right: 10 } },
     interaction: { mode: 'nearest', axis: 'x', intersect: false },
     plugins: {
       legend: { display: false }, filler: { propagate: false }, lines: { plot },
@@ -222,9 +266,15 @@ function plotView(figure) {
       `${plot.y_label}: ${short(lower, 3)} to ${short(upper, 3)}${plot.log_y ? ', logarithmic' : ''}.`);
   };
   const update = () => {
+    const small = plot.marks.filter((mark) => mark.small);
+    const texts = [...new Set(small.map((mark) => mark.text))];
+    const ownerOf = (text) => {
+      const owners = new Set(small.filter((mark) => mark.text === text).map((mark) => mark.pipeline));
+      return owners.size === 1 ? [...owners][0] : ofData;
+    };
     legend.replaceChildren(...plot.series.filter((series) => series.name !== '').map((series) => element('li', { class: isShown(series.pipeline) ? undefined : 'off' },
-      swatch(series.pipeline, series.shade, series.kind), series.name)));
-    legend.hidden = plot.series.length < 2 && plot.series.every((series) => series.name === '');
+      swatch(series.pipeline, series.shade, series.kind), series.name)), ...texts.map((text) => element('li', {}, swatch(ownerOf(text), 0, 'triangle'), text)));
+    legend.hidden = texts.length === 0 && plot.series.length < 2 && plot.series.every((series) => series.name === '');
     numbers.refresh();
     if (chart === null) return;
     label();

@@ -110,40 +110,6 @@ void draw_frame(Drawing& drawing, const Frame& frame) {
                at_middle(ink) + fmt::format(" transform=\"rotate(-90 {} {})\"", beside, middle));
 }
 
-void draw_marks(Drawing& drawing, std::vector<Mark> marks, const Axis& x, double top,
-                double bottom) {
-  std::stable_sort(marks.begin(), marks.end(),
-                   [](const Mark& a, const Mark& b) { return a.x < b.x; });
-  std::erase_if(marks, [&](const Mark& m) { return !(m.x >= x.lower && m.x <= x.upper); });
-  std::array<double, 3> used = {-INFINITY, -INFINITY, -INFINITY};
-  std::vector<std::pair<const Mark*, Point>> texts;  // above the lines of all of them
-  for (const Mark& mark : marks) {
-    const double half = text_width(mark.text) / 2 + 4;
-    const double centre =
-        std::clamp(x(mark.x), x.begin + half - 40, std::max(x.begin + half - 40, x.end - half + 8));
-    std::size_t row = 0;
-    while (row < used.size() && used[row] > centre - half) ++row;
-    const double above = row < used.size() ? 6 + 13 * static_cast<double>(row) : 0;
-    drawing.begin_group(owner(mark.pipeline) + "class=\"mark\"");
-    drawing.line(
-        {x(mark.x), top - above}, {x(mark.x), bottom},
-        fmt::format("class=\"axis\" stroke=\"{}\" stroke-opacity=\"0.6\" stroke-dasharray=\"3 3\"",
-                    colour_of(mark.pipeline)));
-    drawing.end_group();
-    if (row == used.size()) continue;
-    used[row] = centre + half;
-    texts.push_back({&mark, {centre, top - above - 2}});
-  }
-  for (const auto& [mark, at] : texts) {
-    const std::string fill = mark->pipeline == of_data
-                                 ? std::string(soft)
-                                 : "fill=\"" + colour_of(mark->pipeline) + "\"";
-    drawing.begin_group(owner(mark->pipeline) + "class=\"mark\"");
-    drawing.text(at, mark->text, at_middle(fill) + std::string(halo) + " font-size=\"11\"");
-    drawing.end_group();
-  }
-}
-
 double draw_legend(Drawing* drawing, const std::vector<LegendEntry>& entries, double left,
                    double right, double top) {
   double x = left, y = top;
@@ -157,6 +123,10 @@ double draw_legend(Drawing* drawing, const std::vector<LegendEntry>& entries, do
     if (drawing != nullptr) {
       if (entry.kind == LegendEntry::Kind::line)
         drawing->line({x, y - 4}, {x + 24, y - 4}, entry.style);
+      if (entry.kind == LegendEntry::Kind::triangle)
+        drawing->polygon({{x + 8, y}, {x + 16, y}, {x + 12, y - 8}}, entry.style);
+      if (entry.kind == LegendEntry::Kind::squares)
+        drawing->rectangle({x + 9, y - 7}, 6, 6, entry.style);
       if (entry.kind == LegendEntry::Kind::points)
         drawing->circle({x + 12, y - 4}, 3.5, entry.style);
       if (entry.kind == LegendEntry::Kind::band || entry.kind == LegendEntry::Kind::fill) {

@@ -51,17 +51,23 @@ void draw_frame(Drawing& drawing, const Frame& frame);
 /// What the ticks and the label of y take to the left of the frame.
 double room_beside(const Axis& y);
 
-/// Vertical lines with texts above `top`, in up to three rows of 13 units; a text that would cover
-/// another one is left out.
+/// Vertical lines with texts above `top`, in up to three rows of 13 units: two texts that would
+/// cover each other stand on both sides of their lines, or in two rows; one without room is left
+/// out. Small marks are triangles at `bottom`, those of every pipeline above those of the one
+/// before.
 void draw_marks(Drawing& drawing, std::vector<Mark> marks, const Axis& x, double top,
                 double bottom);
+/// Do any of them have texts above?
+bool has_texts(const std::vector<Mark>& marks);
 
 struct LegendEntry {
-  enum class Kind { line, band, points, fill };
+  enum class Kind { line, band, points, squares, fill, triangle };
   Kind kind = Kind::line;
   std::string text;
   std::string style;  ///< of what stands before the text
 };
+/// Of small marks, one per text.
+std::vector<LegendEntry> legend_of(const std::vector<Mark>& marks);
 /// Rows from `top` on, between `left` and `right`; returns their height. Without a drawing it only
 /// measures.
 double draw_legend(Drawing* drawing, const std::vector<LegendEntry>& entries, double left,

@@ -42,12 +42,14 @@ void draw_band(Drawing& drawing, const Series& series, const Frame& frame, std::
   drawing.polyline(upper, stroke_of(series.pipeline, series.shade, 1.1));
 }
 
+bool has_squares(const Series& series) { return (series.pipeline / 8 + series.shade) % 2 != 0; }
+
 void draw_points(Drawing& drawing, const Series& series, const Frame& frame, std::size_t begin,
                  std::size_t end) {
   const std::string fill = fmt::format("fill=\"{}\"", colour_of(series.pipeline, series.shade));
   for (std::size_t i = begin; i < end; ++i) {
     const Point at{frame.x(series.x[i]), frame.y(series.y[i])};
-    if ((series.pipeline / 8 + series.shade) % 2 == 0) {
+    if (!has_squares(series)) {
       drawing.circle(at, 3.2, fill);
     } else {
       drawing.rectangle({at.first - 3, at.second - 3}, 6, 6, fill);
@@ -91,7 +93,9 @@ std::vector<LegendEntry> legend_of(const Plot& plot) {
           {LegendEntry::Kind::band, series.name,
            fill + " fill-opacity=\"0.15\" " + stroke_of(series.pipeline, series.shade, 1.1)});
     } else if (series.kind == Series::Kind::points) {
-      entries.push_back({LegendEntry::Kind::points, series.name, fill});
+      entries.push_back(
+          {has_squares(series) ? LegendEntry::Kind::squares : LegendEntry::Kind::points,
+           series.name, fill});
     } else {
       entries.push_back(
           {LegendEntry::Kind::line, series.name, stroke_of(series.pipeline, series.shade)});
@@ -122,7 +126,7 @@ Axis x_axis(const Plot& plot, double begin, double end) {
 
 std::string draw(const Plot& plot, const Figure& figure) {
   constexpr double width = 640, right = 626, height = 280;
-  const double top = plot.marks.empty() ? 14 : 52, bottom = top + height;
+  const double top = has_texts(plot.marks) ? 52 : 14, bottom = top + height;
   std::vector<double> values;
   bool whole = true;
   for (const Series& series : plot.series) {
@@ -136,11 +140,12 @@ std::string draw(const Plot& plot, const Figure& figure) {
   const double left = room_beside(y_axis) + 8;
   const Frame frame{
       x_axis(plot, left, right), y_axis, plot.x_label, plot.y_label, plot.x_names, whole};
-  const std::vector<LegendEntry> legend = legend_of(plot);
+  std::vector<LegendEntry> legend = legend_of(plot);
+  for (LegendEntry& entry : legend_of(plot.marks)) legend.push_back(std::move(entry));
   const double legend_top = bottom + 60;
 
-  Drawing drawing(width, legend_top + draw_legend(nullptr, legend, left, right, legend_top),
-                  figure.title);
+  const double note_top = legend_top + draw_legend(nullptr, legend, left, right, legend_top);
+  Drawing drawing(width, note_top + (plot.note.empty() ? 0 : 18), figure.title);
   draw_frame(drawing, frame);
   drawing.begin_clip({left, top}, right - left, bottom - top);
   for (const Series& series : plot.series) draw_series(drawing, series, frame);
@@ -151,10 +156,11 @@ std::string draw(const Plot& plot, const Figure& figure) {
     drawing.line({left, y}, {right, y},
                  "class=\"trace\" stroke=\"#1b2230\" stroke-dasharray=\"6 4\"");
     drawing.text({right - 4, y < top + 16 ? y + 13 : y - 4}, name,
-                 at_end(ink) + " font-size=\"11\"");
+                 at_end(ink) + std::string(halo) + " font-size=\"11\"");
   }
   draw_marks(drawing, plot.marks, frame.x, top, bottom);
   draw_legend(&drawing, legend, left, right, legend_top);
+  if (!plot.note.empty()) drawing.text({left, note_top}, shortened(plot.note, right - left), soft);
   return drawing.str();
 }
 

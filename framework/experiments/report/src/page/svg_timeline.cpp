@@ -47,8 +47,7 @@ std::string draw(const Timeline& timeline, const Figure& figure) {
     states.insert(span.state);
   }
   if (first > last) first = last = 0;
-  const double half = timeline.step / 2;
-  const Axis x{first - half, last + half, left, right};
+  const Axis x{first, last + timeline.step, left, right};  // a state holds until the next sample
 
   std::vector<LegendEntry> legend;
   for (const Timeline::State state : states) {
@@ -70,8 +69,8 @@ std::string draw(const Timeline& timeline, const Figure& figure) {
     drawing.line({left, y + row_height}, {right, y + row_height}, rule);
   }
   for (const Timeline::Span& span : timeline.spans) {
-    const double y = top + row_height * static_cast<double>(span.row), from = x(span.from - half),
-                 to = x(span.to + half);
+    const double y = top + row_height * static_cast<double>(span.row), from = x(span.from),
+                 to = x(span.to + timeline.step);
     if (span.state == Timeline::State::truth) {
       drawing.rectangle({from, y + row_height - 8}, std::max(1.0, to - from), 4,
                         style_of(span.state));

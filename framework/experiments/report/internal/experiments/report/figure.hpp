@@ -33,11 +33,13 @@ struct Series {
   int shade = 0;                   ///< several series of one pipeline: modes for example
 };
 
-/// A vertical line: something happens at x.
+/// Something happens at x: a vertical line with its text above, or a small triangle at the lower
+/// axis, whose text is an entry of the legend, one for all with this text.
 struct Mark {
   double x = 0;
   std::string text;
   int pipeline = of_data;
+  bool small = false;
 };
 
 struct Plot {
@@ -49,6 +51,7 @@ struct Plot {
   std::vector<std::string> x_names = {};  ///< not empty: x = 0, 1, … are these words
   /// What the vertical axis has to show; more is cut off. Empty: everything.
   std::optional<std::pair<double, double>> range = {};
+  std::string note = {};  ///< below the legend of a drawing, which has no caption; may be empty
 };
 
 /// A convex polygon, counter-clockwise. No vertices: the set is proven empty.
