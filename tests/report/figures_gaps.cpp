@@ -2,6 +2,8 @@
 // Where nothing is said nothing is drawn, and what begins anew or is left out does not hide the
 // rest.
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -11,7 +13,30 @@
 
 using namespace cordon::report;
 
-TEST_CASE("where estimates begin anew, their wide first sets are cut off, and one mark is left") {
+namespace {
+
+/// Steps of "a" at k = 0, 1, …: the half width of state 1, or "" where the estimate is empty.
+std::string steps_of(const std::vector<std::string>& halves) {
+  std::string rows = "pipeline,k,consistent,tightness,lower_1,upper_1\n";
+  for (std::size_t k = 0; k < halves.size(); ++k) {
+    const std::string& half = halves[k];
+    rows += "a," + std::to_string(k) +
+            (half.empty() ? ",no,outer,1,-1\n" : ",yes,outer,-" + half + "," + half + "\n");
+  }
+  return rows;
+}
+
+std::vector<Mark> small_marks(const Plot& plot) {
+  std::vector<Mark> found;
+  for (const Mark& mark : plot.marks) {
+    if (mark.small) found.push_back(mark);
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("where estimates begin anew they are marked, and their wide first sets are cut off") {
   const ResultsFiles files;
   files.write("steps.csv",
               "pipeline,k,consistent,tightness,lower_1,lower_2,upper_1,upper_2\n"
@@ -26,8 +51,39 @@ TEST_CASE("where estimates begin anew, their wide first sets are cut off, and on
   REQUIRE(bounds.range);
   CHECK(*bounds.range == std::pair(-2., 3.));
   CHECK(bounds.series[0].upper[2] == 500);  // of which the table tells
-  REQUIRE(bounds.marks.size() == 1);
+  REQUIRE(bounds.marks.size() == 2);
   CHECK(bounds.marks[0].text == "empty 2 times, first at k = 1");
+  CHECK(bounds.marks[1].text == "begun anew");
+  CHECK(bounds.marks[1].x == 2);
+  CHECK(bounds.marks[1].pipeline == 0);
+  CHECK(bounds.marks[1].small);
+  CHECK(small_marks(content<Plot>(report, "width_1")).size() == 1);
+}
+
+TEST_CASE("what follows a restart decides no range before it is about as wide as usual") {
+  const ResultsFiles files;
+  files.write("data.csv", "k,y_1,x_1\n0,0,0\n1,0,0\n6,0,0\n7,0,0\n8,0,0\n9,0,0\n");
+  files.write("steps.csv", steps_of({"1", "1", "1", "1", "1", "", "15", "8", "1.5", "1"}));
+  const Report report = read_report(files.path());
+  const auto range = std::pair(-1.5, 1.5);
+  CHECK(content<Plot>(report, "bounds_1").range == range);
+  CHECK(content<Plot>(report, "bounds_less_truth_1").range == range);
+  CHECK(small_marks(content<Plot>(report, "bounds_less_truth_1")).size() == 1);
+  files.write("steps.csv", steps_of({"15", "8", "1", "1", "1", "1", "1", "", "", ""}));
+  CHECK_FALSE(content<Plot>(read_report(files.path()), "bounds_1").range);
+}
+
+TEST_CASE("of very many restarts the first are marked, and the caption counts all") {
+  const ResultsFiles files;
+  std::vector<std::string> halves;
+  for (int i = 0; i < 60; ++i) halves.insert(halves.end(), {"1", ""});
+  files.write("data.csv", "k,y_1\n0,0\n");
+  files.write("steps.csv", steps_of(halves));
+  const Report report = read_report(files.path());
+  CHECK(small_marks(content<Plot>(report, "bounds_1")).size() == 50);
+  const std::string& caption = find_figure(report, "bounds_1")->caption;
+  CHECK(caption.find("\"a\" does so 59 times, of which the first 50 are marked") !=
+        std::string::npos);
 }
 
 TEST_CASE("what a diagnoser says nothing of is a gap, in bounds of faults and in residuals") {
@@ -60,16 +116,64 @@ TEST_CASE("what a diagnoser says nothing of is a gap, in bounds of faults and in
                             Timeline::State::excluded});
 }
 
-TEST_CASE("pipelines that leave out the same samples share their marks") {
+TEST_CASE("a sample that is left out has one mark, of all pipelines that leave it out") {
   const ResultsFiles files;
-  files.write("data.csv", "k,y_1,y_2\n0,0,5\n1,9,6\n2,0,7\n");
-  const std::string left_out =
-      R"("summary": {"outliers": {"left_out": [{"k": 1, "outputs": [1]}]}}, "steps": [])";
-  files.replace("results.json", R"("steps": [{"k": 0}])", left_out);
+  files.write("data.csv", "k,y_1,y_2\n0,3,5\n1,9,6\n2,0,7\n");
+  const auto left_out = [](const std::string& samples) {
+    return R"("summary": {"outliers": {"left_out": [)" + samples + R"(]}}, "steps": [])";
+  };
+  const std::string both = R"({"k": 1, "outputs": [1]})";
+  files.replace("results.json", R"("steps": [{"k": 0}])",
+                left_out(R"({"k": 0, "outputs": [1]}, )" + both));
   files.replace("results.json", R"("observer": "o", "steps": [])",
-                R"("observer": "o", )" + left_out);
+                R"("observer": "o", )" + left_out(both + R"(, {"k": 2, "outputs": [1]})"));
   const Plot first = content<Plot>(read_report(files.path()), "output_1");
-  REQUIRE(first.series.size() == 2);
-  CHECK(first.series[1].name == "left out by a, b");
-  CHECK(first.series[1].pipeline == of_data);
+  REQUIRE(first.series.size() == 4);
+  std::vector<std::string> names;
+  std::vector<int> pipelines;
+  std::vector<double> times;
+  for (std::size_t i = 1; i < 4; ++i) {
+    const Series& series = first.series[i];
+    names.push_back(series.name);
+    pipelines.push_back(series.pipeline);
+    times.insert(times.end(), series.x.begin(), series.x.end());
+  }
+  CHECK(names == std::vector<std::string>{"left out by a", "left out by b", "left out by a, b"});
+  CHECK(pipelines == std::vector{0, 1, of_data});
+  CHECK(times == std::vector<double>{0, 2, 1});
+}
+
+TEST_CASE("samples that all of many pipelines leave out, and too many kinds of shared ones") {
+  const ResultsFiles files;
+  std::string data = "k,y_1\n";
+  const auto write = [&](const std::vector<std::vector<int>>& left_out) {
+    std::string results = files.read("results.json"), list;
+    for (std::size_t p = 0; p < left_out.size(); ++p) {
+      std::string samples;
+      for (const int k : left_out[p])
+        samples += (samples.empty() ? "" : ", ") + std::string(R"({"k": )") + std::to_string(k) +
+                   R"(, "outputs": [1]})";
+      list += (p > 0 ? ", " : "") + std::string(R"({"name": ")") + static_cast<char>('a' + p) +
+              R"(", "backend": "box", "observer": "o", "summary": {"outliers": {"left_out": [)" +
+              samples + R"(]}}, "steps": []})";
+    }
+    const std::size_t from = results.find(R"("pipelines": [)") + 14;
+    files.write("results.json", results.replace(from, results.rfind(']') - from, list));
+  };
+  for (int k = 0; k < 6; ++k) data += std::to_string(k) + "," + std::to_string(k) + "\n";
+  files.write("data.csv", data);
+  files.write("steps.csv", "pipeline,k,consistent,tightness,lower_1,upper_1\n");
+  files.write("run.json", R"({"cordon_run": 1, "host": {"name": "h"}, "pipelines": [
+    {"name": "a", "steps": []}, {"name": "b", "steps": []}, {"name": "c", "steps": []}, {"name": "d", "steps": []}]})");
+  const auto names = [&] {
+    std::vector<std::string> found;
+    for (const Series& series : content<Plot>(read_report(files.path()), "output_1").series) {
+      if (!series.name.empty()) found.push_back(series.name);
+    }
+    return found;
+  };
+  write({{1}, {1}, {1}, {1}});
+  CHECK(names() == std::vector<std::string>{"left out by all"});
+  write({{0, 1, 2, 5}, {0, 3, 4, 5}, {1, 3}, {2, 4, 5}});
+  CHECK(names() == std::vector<std::string>{"left out by several"});
 }

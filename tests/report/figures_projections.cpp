@@ -8,6 +8,7 @@
 
 #include "cordon/core/error.hpp"
 #include "experiments/report/read_report.hpp"
+#include "report/find_figure.hpp"
 #include "report/results_files.hpp"
 
 using namespace cordon;
@@ -86,6 +87,12 @@ TEST_CASE("sets of all kinds in one figure") {
   CHECK(third.truth.has_value());
   CHECK(third.left < 1);
   CHECK(third.right > 1);
+  const auto tells_of_empty = [](const Report& told) {
+    return find_figure(told, "sets_1_2")->caption.find("proven empty") != std::string::npos;
+  };
+  CHECK(tells_of_empty(report));
+  files.write("sets.jsonl", line("a", 0, space) + line("b", 0, strip));
+  CHECK_FALSE(tells_of_empty(read_report(files.path())));
 }
 
 TEST_CASE("a set that is much larger than others is cut by the window, the truth never is") {

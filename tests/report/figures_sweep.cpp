@@ -180,6 +180,9 @@ TEST_CASE(
   CHECK(plot.series[1].y == std::vector<double>{4.5, 2.5});
   CHECK(plot.series[3].pipeline == 1);
   CHECK(plot.series[3].y == std::vector<double>{2.5, 3.5});
+  CHECK(plot.note == "Lines: means, bands: 5 % to 95 % quantiles, over all values of seed.");
+  const Report report = read_report(sweep.files.path());
+  CHECK(find_figure(report, "sweep_order_radius_mean")->caption.starts_with(plot.note));
 }
 
 TEST_CASE("values that are words, or not in order, are names on the axis") {

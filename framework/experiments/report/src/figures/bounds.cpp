@@ -23,38 +23,95 @@ void add_events(const Curves& curves, Plot& plot) {
     plot.marks.push_back({static_cast<double>(event.k), event.text});
 }
 
-/// Where an estimate begins anew after it was empty, its first set may be very wide.
 bool begins_anew(const Curves& curves) {
   return std::any_of(curves.pipelines.begin(), curves.pipelines.end(),
-                     [](const StepCurves& steps) { return steps.empty_from.size() > 1; });
+                     [](const StepCurves& steps) { return steps.times_anew > 0; });
 }
 
-constexpr double much_wider = 20;
-
-/// The range of what is no more than `much_wider` times as wide as the median; none if all is.
-std::optional<std::pair<double, double>> range_but_for_wide_bands(const Plot& plot) {
-  std::vector<double> widths;
-  const auto width_at = [](const Series& series, std::size_t i) {
-    return series.upper.empty() ? 0.0 : series.upper[i] - series.y[i];
-  };
-  for (const Series& series : plot.series) {
-    for (std::size_t i = 0; i < series.upper.size(); ++i) {
-      if (std::isfinite(width_at(series, i))) widths.push_back(width_at(series, i));
-    }
+void add_restarts(const Curves& curves, Plot& plot) {
+  for (std::size_t p = 0; p < curves.pipelines.size(); ++p) {
+    for (const std::int64_t k : curves.pipelines[p].anew)
+      plot.marks.push_back({static_cast<double>(k), "begun anew", static_cast<int>(p), true});
   }
-  if (widths.empty()) return std::nullopt;
+}
+
+constexpr double much_wider = 20, usual_wider = 2;  ///< times the median of widths
+
+double width_at(const Series& series, std::size_t i) {
+  return series.upper.empty() ? 0.0 : series.upper[i] - series.y[i];
+}
+
+/// Of the finite ones; NaN if there are none.
+double median(std::vector<double> widths) {
+  std::erase_if(widths, [](double width) { return !std::isfinite(width); });
+  if (widths.empty()) return not_available;
   const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
   std::nth_element(widths.begin(), middle, widths.end());
+  return *middle;
+}
+
+std::vector<double> widths_of(const Series& series) {
+  std::vector<double> widths;
+  for (std::size_t i = 0; i < series.upper.size(); ++i) widths.push_back(width_at(series, i));
+  return widths;
+}
+
+/// By point: does it lie between a time at which the estimate begins anew and the first at which
+/// its band is not much wider than usual?
+std::vector<bool> unsettled(const Series& band, const std::vector<std::int64_t>& anew) {
+  std::vector<bool> found(band.x.size(), false);
+  const double limit = usual_wider * median(widths_of(band));
+  auto next = anew.begin();
+  bool now = false;
+  for (std::size_t i = 0; i < band.x.size(); ++i) {
+    for (; next != anew.end() && static_cast<double>(*next) <= band.x[i]; ++next) now = true;
+    if (width_at(band, i) <= limit) now = false;
+    found[i] = now;
+  }
+  return found;
+}
+
+/// The range of the bands but for those of estimates that have just begun anew, and those more than
+/// `much_wider` times as wide as the median of all; none if nothing is left.
+std::optional<std::pair<double, double>> usual_range(const Curves& curves, const Plot& plot) {
+  std::vector<double> widths;
+  for (const Series& series : plot.series) {
+    const std::vector<double> more = widths_of(series);
+    widths.insert(widths.end(), more.begin(), more.end());
+  }
+  const double limit = much_wider * median(std::move(widths));
   double lower = infinity, upper = -infinity;
   for (const Series& series : plot.series) {
+    std::vector<bool> left_out(series.x.size(), false);
+    if (series.pipeline != of_data && series.kind == Series::Kind::band) {
+      const auto p = static_cast<std::size_t>(series.pipeline);
+      left_out = unsettled(series, curves.pipelines[p].anew);
+    }
     for (std::size_t i = 0; i < series.y.size(); ++i) {
-      if (!(width_at(series, i) <= much_wider * *middle)) continue;
+      if (left_out[i] || !(width_at(series, i) <= limit)) continue;
       lower = std::min(lower, series.y[i]);
       upper = std::max(upper, series.upper.empty() ? series.y[i] : series.upper[i]);
     }
   }
   if (!std::isfinite(upper - lower)) return std::nullopt;
   return std::pair(lower, upper);
+}
+
+/// What captions say of restarts.
+std::string restarts_text(const RunFiles& files, const Curves& curves) {
+  if (!begins_anew(curves)) return "";
+  std::string text =
+      " Triangles at the axis: an estimate begins anew after it was empty. Its first, wide bands "
+      "go "
+      "on beyond the frame.";
+  for (std::size_t p = 0; p < curves.pipelines.size(); ++p) {
+    const StepCurves& steps = curves.pipelines[p];
+    if (steps.times_anew > static_cast<std::int64_t>(steps.anew.size())) {
+      text += fmt::format(" \"{}\" does so {} times, of which the first {} are marked.",
+                          files.pipelines()[p].name, steps.times_anew, steps.anew.size());
+    }
+  }
+  return text;
 }
 
 Plot bounds_of(const RunFiles& files, const Curves& curves, std::size_t i) {
@@ -81,7 +138,8 @@ Plot bounds_of(const RunFiles& files, const Curves& curves, std::size_t i) {
   if (i < curves.truth.size() && curves.truth[i].has_values())
     plot.series.push_back(curves.truth[i].line("true state", of_data));
   add_events(curves, plot);
-  if (begins_anew(curves)) plot.range = range_but_for_wide_bands(plot);
+  add_restarts(curves, plot);
+  if (begins_anew(curves)) plot.range = usual_range(curves, plot);
   return plot;
 }
 
@@ -95,10 +153,12 @@ Plot errors_of(const RunFiles& files, const Curves& curves, std::size_t i) {
       plot.series.push_back(steps.error[i].band(files.pipelines()[p].name, static_cast<int>(p)));
   }
   add_events(curves, plot);
+  add_restarts(curves, plot);
+  if (begins_anew(curves)) plot.range = usual_range(curves, plot);
   return plot;
 }
 
-Plot widths_of(const RunFiles& files, const Curves& curves, std::size_t i) {
+Plot width_plot_of(const RunFiles& files, const Curves& curves, std::size_t i) {
   Plot plot{"k", "width of " + axis_of(files.labels().states, "x", i), false, {}};
   double smallest = infinity, largest = 0;
   for (std::size_t p = 0; p < curves.pipelines.size(); ++p) {
@@ -110,6 +170,7 @@ Plot widths_of(const RunFiles& files, const Curves& curves, std::size_t i) {
   }
   plot.log_y = is_logarithmic(smallest, largest);
   add_events(curves, plot);
+  add_restarts(curves, plot);
   return plot;
 }
 
@@ -152,18 +213,14 @@ void add_bounds(const RunFiles& files, const Curves& curves, Report& report) {
     caption +=
         " Inner bands are reached by some trajectory: what lies between them and the bounds is the "
         "price of enclosing.";
-  if (begins_anew(curves)) {
-    caption += fmt::format(
-        " What is more than {} times as wide as usual, as where an estimate begins anew, goes on "
-        "beyond the frame.",
-        much_wider);
-  }
+  const std::string restarts = restarts_text(files, curves);
+  caption += restarts;
   std::vector<Figure> errors, widths;
   Report late;
   for (std::size_t i = 0; i < curves.states; ++i) {
     const std::string state = title_of(files.labels().states, "state", i);
     Plot band = bounds_of(files, curves, i), error = errors_of(files, curves, i),
-         width = widths_of(files, curves, i);
+         width = width_plot_of(files, curves, i);
     const std::string title = "Bounds of " + state, error_title = title + " less its true value";
     add_steady_state(fmt::format("steady_state_{}", i + 1),
                      error.series.empty() ? title : error_title, files,
@@ -172,8 +229,9 @@ void add_bounds(const RunFiles& files, const Curves& curves, Report& report) {
         {fmt::format("bounds_{}", i + 1), section::bounds, title, caption, std::move(band)});
     if (!error.series.empty()) {
       errors.push_back({fmt::format("bounds_less_truth_{}", i + 1), section::bounds, error_title,
-                        "How far the bounds lie from the true state, which is 0 here: a band "
-                        "that leaves 0 out does not hold it.",
+                        "How far the bounds lie from the true state, which is 0 here: a band that "
+                        "leaves 0 out does not hold it." +
+                            restarts,
                         std::move(error)});
     }
     if (!width.series.empty()) {

@@ -157,6 +157,10 @@ class StepsReader {
     if (steps.first < 0) steps.first = k;
     steps.last = std::max(steps.last, k);
     if (empty && !was_empty && steps.empty_from.size() < max_marks) steps.empty_from.push_back(k);
+    if (!empty && was_empty) {
+      ++steps.times_anew;
+      if (steps.anew.size() < max_marks) steps.anew.push_back(k);
+    }
     add_bounds(table_, hull_, empty, k, steps.hull);
     for (std::size_t i = 0; i < steps.width.size(); ++i) {
       const double width = table_.number(hull_.upper[i]) - table_.number(hull_.lower[i]);

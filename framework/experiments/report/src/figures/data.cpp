@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -43,6 +44,9 @@ void add(const ColumnReader& table, std::int64_t k, std::vector<Signal>& signals
   }
 }
 
+/// Of samples that several pipelines have left out: more kinds of marks could not be told apart.
+constexpr std::size_t most_shared = 4;
+
 /// The samples that pipelines have left out as outliers, on the curve of their output.
 class LeftOut {
  public:
@@ -60,46 +64,72 @@ class LeftOut {
   }
 
   void add(double k, const ColumnReader& table, const std::vector<Signal>& outputs) {
+    std::map<std::size_t, std::set<std::size_t>> by_output;
     for (auto [at, end] = places_.equal_range(k); at != end; ++at) {
       const auto [pipeline, output] = at->second;
-      if (!(output >= 1 && output <= static_cast<double>(outputs.size()))) continue;
-      const std::size_t i = static_cast<std::size_t>(output) - 1;
-      Series& series = series_[{i, pipeline}];
+      if (output >= 1 && output <= static_cast<double>(outputs.size()))
+        by_output[static_cast<std::size_t>(output) - 1].insert(pipeline);
+    }
+    for (const auto& [i, pipelines] : by_output) {
+      Series& series = series_[{i, pipelines}];
       series.x.push_back(k);
       series.y.push_back(table.number(outputs[i].column));
     }
   }
 
-  /// Appends those of output i; are there any? Pipelines that leave out the same samples share
-  /// their marks, which would hide each other.
+  /// Appends those of output i; are there any? A sample has one mark, whoever has left it out:
+  /// marks of several pipelines would hide each other.
   bool append(std::size_t i, Plot& plot) {
     const std::size_t before = plot.series.size();
-    for (std::size_t p = 0; p < files_.pipelines().size(); ++p) {
-      const auto found = series_.find({i, p});
-      if (found == series_.end()) continue;
-      const std::string& name = files_.pipelines()[p].name;
-      const auto begin = plot.series.begin() + static_cast<std::ptrdiff_t>(before);
-      const auto same = std::find_if(begin, plot.series.end(), [&](const Series& series) {
-        return series.x == found->second.x;
-      });
-      if (same != plot.series.end()) {
-        same->name += ", " + name;
-        same->pipeline = of_data;
-        same->shade = 1;
+    std::vector<Series> shared;
+    for (auto& [key, series] : series_) {
+      const auto& [output, pipelines] = key;
+      if (output != i) continue;
+      series.kind = Series::Kind::points;
+      series.name = "left out by " + names_of(pipelines);
+      if (pipelines.size() > 1) {
+        shared.push_back(std::move(series));
         continue;
       }
-      found->second.kind = Series::Kind::points;
-      found->second.name = "left out by " + name;
-      found->second.pipeline = static_cast<int>(p);
-      plot.series.push_back(std::move(found->second));
+      series.pipeline = static_cast<int>(*pipelines.begin());
+      plot.series.push_back(std::move(series));
+    }
+    if (shared.size() > most_shared) shared = {joined(shared)};
+    int shade = 0;
+    for (Series& series : shared) {
+      series.shade = ++shade;
+      plot.series.push_back(std::move(series));
     }
     return plot.series.size() > before;
   }
 
  private:
+  /// "all" of more than two, or their names.
+  std::string names_of(const std::set<std::size_t>& pipelines) const {
+    if (pipelines.size() > 2 && pipelines.size() == files_.pipelines().size()) return "all";
+    std::string names;
+    for (const std::size_t p : pipelines)
+      names += (names.empty() ? "" : ", ") + files_.pipelines()[p].name;
+    return names;
+  }
+
+  static Series joined(const std::vector<Series>& several) {
+    std::map<double, double> points;
+    for (const Series& series : several) {
+      for (std::size_t i = 0; i < series.x.size(); ++i) points[series.x[i]] = series.y[i];
+    }
+    Series all{Series::Kind::points, "left out by several", of_data, {}, {}};
+    for (const auto& [x, y] : points) {
+      all.x.push_back(x);
+      all.y.push_back(y);
+    }
+    return all;
+  }
+
   const RunFiles& files_;
   std::multimap<double, std::pair<std::size_t, double>> places_;  ///< by k: pipeline and output
-  std::map<std::pair<std::size_t, std::size_t>, Series> series_;  ///< by output and pipeline
+  /// By output, and by those who have left out the same samples.
+  std::map<std::pair<std::size_t, std::set<std::size_t>>, Series> series_;
 };
 
 Plot plot_of(const Signal& signal, const std::string& label, Series::Kind kind,

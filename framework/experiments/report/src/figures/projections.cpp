@@ -236,6 +236,9 @@ class Projector {
       caption +=
           " Of some sets an enclosure is drawn, since their representation has no exact exchange "
           "form.";
+    if (any_empty())
+      caption +=
+          " At some times pipelines are missing: their sets are proven empty, which is said below.";
     for (std::size_t q = 0; q < pairs_.size(); ++q) {
       const auto [i, j] = pairs_[q];
       const Labels::Names& names = files_.labels().states;
@@ -259,6 +262,14 @@ class Projector {
   bool is_needed() const { return !pairs_.empty() && !times_.empty(); }
 
  private:
+  bool any_empty() const {
+    return std::any_of(pictures_.begin(), pictures_.end(), [](const auto& at) {
+      const auto& sets = at.second.front().sets;
+      return std::any_of(sets.begin(), sets.end(),
+                         [](const auto& set) { return set.second.kind == PlaneSet::Kind::empty; });
+    });
+  }
+
   std::vector<Drawn>& drawn(std::int64_t k) {
     std::vector<Drawn>& pictures = pictures_[k];
     pictures.resize(pairs_.size());

@@ -76,10 +76,13 @@ std::optional<double> end_of_transient(const std::vector<const Series*>& widths)
 }
 
 std::optional<Plot> hidden_after(const Plot& plot, double k) {
-  const auto [lower, upper] = range_of(plot, -infinity);
-  const auto [late_lower, late_upper] = range_of(plot, k);
+  const auto [lower, upper] = plot.range.value_or(range_of(plot, -infinity));
+  auto [late_lower, late_upper] = range_of(plot, k);
+  late_lower = std::max(late_lower, lower);  // what is cut off anyway
+  late_upper = std::min(late_upper, upper);
   if (!(late_upper - late_lower < legible * (upper - lower))) return std::nullopt;
   Plot late = plot;
+  if (plot.range && late_lower < late_upper) late.range = {late_lower, late_upper};
   for (Series& series : late.series) series = after(series, k);
   std::erase_if(late.series, [](const Series& series) { return series.x.empty(); });
   std::erase_if(late.marks, [&](const Mark& mark) { return mark.x < k; });

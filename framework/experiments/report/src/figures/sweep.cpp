@@ -244,20 +244,35 @@ std::string id_of(const std::string& axis, const std::string& column, const Repo
   return fmt::format("{}_{}", id, number);
 }
 
+/// The axes that numbers at one value of `axis` are taken over: "seed, order".
+std::string others_of(const ResultTable& table, std::size_t axis) {
+  std::string names;
+  for (std::size_t i = 0; i < table.axes.size(); ++i) {
+    if (i != axis && table.axes[i].values.size() > 1)
+      names += (names.empty() ? "" : ", ") + table.axes[i].name;
+  }
+  return names;
+}
+
 void add_curves(const ResultTable& table, const Summary& summary,
                 const std::vector<Measure>& measures, Report& report) {
   for (const std::size_t axis : factors_of(table)) {
     if (table.axes[axis].values.size() < 2) continue;
+    const std::string others = others_of(table, axis);
+    const std::string meaning =
+        others.empty()
+            ? "Lines join the numbers of single points."
+            : "Lines: means, bands: 5 % to 95 % quantiles, over all values of " + others + ".";
     for (const Measure& measure : measures) {
       Plot plot = curves_of(table, summary, axis, measure);
       if (plot.series.empty()) continue;
+      if (!others.empty()) plot.note = meaning;
       report.figures.push_back(
           {id_of(table.axes[axis].name, table.columns[measure.column].name, report), section::sweep,
            fmt::format("{} over {}", measure.title, table.axes[axis].name),
-           "Lines are means, bands the range from the 5 % to the 95 % quantile, over all "
-           "repetitions and "
-           "other values. Gaps: a pipeline has "
-           "failed, has no number, or its estimates ended early at some of them.",
+           meaning +
+               " Gaps: a pipeline has failed, has no number, or its estimates ended early at some "
+               "of them.",
            std::move(plot)});
     }
   }
