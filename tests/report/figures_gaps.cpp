@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where nothing is said nothing is drawn, and what begins anew or is left out does not hide the
 // rest.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -71,6 +72,23 @@ TEST_CASE("what follows a restart decides no range before it is about as wide as
   CHECK(small_marks(content<Plot>(report, "bounds_less_truth_1")).size() == 1);
   files.write("steps.csv", steps_of({"15", "8", "1", "1", "1", "1", "1", "", "", ""}));
   CHECK_FALSE(content<Plot>(read_report(files.path()), "bounds_1").range);
+}
+
+TEST_CASE("a steady state is drawn again if it is narrow in what restarts leave of the figure") {
+  const ResultsFiles files;
+  files.write("data.csv", "k,y_1\n0,0\n");
+  std::vector<std::string> halves(40, "1");
+  halves[8] = "";
+  halves[9] = "50";
+  files.write("steps.csv", steps_of(halves));
+  CHECK_FALSE(find_figure(read_report(files.path()), "steady_state_1"));  // fills the figure
+  std::fill(halves.begin(), halves.begin() + 5, "9");
+  files.write("steps.csv", steps_of(halves));
+  const Report report = read_report(files.path());
+  CHECK(content<Plot>(report, "bounds_1").range == std::pair(-9., 9.));
+  const Plot late = content<Plot>(report, "steady_state_1");
+  CHECK(late.series[0].x.front() == 10);
+  CHECK(late.range == std::pair(-1., 1.));
 }
 
 TEST_CASE("of very many restarts the first are marked, and the caption counts all") {
