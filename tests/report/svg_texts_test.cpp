@@ -148,6 +148,29 @@ TEST_CASE("a table of many columns is no wider than other figures, and its numbe
   CHECK(has_text(drawn(table), "constrained_zonotope"));
 }
 
+TEST_CASE("pictures of sets have three ticks across where their texts have room") {
+  const auto ticks = [](double left, double right) {
+    Projection projection{"x", "y", {{0, left, right, 0, 1, {{0, {left, right}, {0, 1}}}}}};
+    const Tree tree = drawn(projection);
+    std::vector<double> places;
+    double before = -1e9;
+    for (const Tree* text : elements(tree, "text")) {
+      const bool below =
+          attribute(*text, "text-anchor") == "middle" && attribute(*text, "class") == "soft";
+      if (!below) continue;
+      const double place = std::stod(attribute(*text, "x")), half = text_width(text->data()) / 2;
+      CHECK(place - half > before);
+      before = place + half;
+      places.push_back(place);
+    }
+    return places.size();
+  };
+  CHECK(ticks(-0.0063123, 0.0112345) >= 3);
+  CHECK(ticks(-0.0351234, -0.0151234) >= 3);
+  CHECK(ticks(0, 1) >= 3);
+  CHECK(ticks(1e6 - 1e-3, 1e6 + 1e-3) >= 1);
+}
+
 TEST_CASE("a note stands below the legend") {
   Plot plot{"x", "y", false, {{Series::Kind::line, "a", 0, {0, 100}, {0, 1}}}};
   const auto height = [&] { return std::stod(attribute(drawn(plot).get_child("svg"), "height")); };

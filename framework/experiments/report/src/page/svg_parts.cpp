@@ -69,6 +69,24 @@ std::vector<double> ticks_of_y(const Axis& y) {
   return y.upright(static_cast<int>((y.begin - y.end) / 45));
 }
 
+/// Do the texts of these ticks have room beside each other?
+bool have_room(const Axis& x, const std::vector<double>& ticks) {
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    const double texts = text_width(x.text(ticks[i - 1])) + text_width(x.text(ticks[i]));
+    if (x(ticks[i]) - x(ticks[i - 1]) < texts / 2 + 10) return false;
+  }
+  return true;
+}
+
+/// About one in 70 units, fewer where texts are long, and three if there is room for them.
+std::vector<double> ticks_of_x(const Axis& x, bool whole) {
+  int count = std::max(1, static_cast<int>((x.end - x.begin) / 70));
+  std::vector<double> ticks = x.ticks(count, whole);
+  while (count > 1 && !have_room(x, ticks)) ticks = x.ticks(--count, whole);
+  const std::vector<double> closer = x.ticks(2 * count, whole);
+  return ticks.size() < 3 && have_room(x, closer) ? closer : ticks;
+}
+
 }  // namespace
 
 double room_beside(const Axis& y) {
@@ -82,9 +100,7 @@ void draw_frame(Drawing& drawing, const Frame& frame) {
   const double bottom = y.begin;
   std::vector<double> x_ticks;
   if (frame.x_names.empty()) {
-    const double widest = std::max(text_width(x.text(x.lower)), text_width(x.text(x.upper)));
-    x_ticks =
-        x.ticks(static_cast<int>((x.end - x.begin) / std::max(70.0, widest + 14)), frame.whole_x);
+    x_ticks = ticks_of_x(x, frame.whole_x);
   } else {
     for (std::size_t i = 0; i < frame.x_names.size(); ++i)
       x_ticks.push_back(static_cast<double>(i));
