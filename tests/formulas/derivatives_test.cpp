@@ -254,6 +254,7 @@ TEST_CASE("random formulas at points: 200 digits by differences are within narro
     for (int a = 0; a < 3; ++a) {
       const Interval first = derivative(evaluator, 0, a);
       const Digits exact = derivative_of(*graph, row, digits(x), a);
+      if (!isfinite(exact)) continue;  // at the end of the domain, or as above
       const Digits room = difference_step() * (1 + abs(exact));
       REQUIRE(Digits(first.lower) <= exact + room);
       REQUIRE(exact - room <= Digits(first.upper));
@@ -261,6 +262,7 @@ TEST_CASE("random formulas at points: 200 digits by differences are within narro
       for (int b = a; b < 3; ++b) {
         const Interval second = second_derivative(evaluator, 0, a, b);
         const Digits twice = second_derivative_of(*graph, row, digits(x), a, b);
+        if (!isfinite(twice)) continue;
         const Digits slack = difference_step() * (1 + abs(twice));
         REQUIRE(Digits(second.lower) <= twice + slack);
         REQUIRE(twice - slack <= Digits(second.upper));
@@ -297,12 +299,15 @@ TEST_CASE("random formulas over boxes: values and derivatives of points are with
         x.push_back(sample < 2         ? uniform(random, side.lower, side.upper)
                     : among(random, 2) ? side.lower
                                        : side.upper);
-      REQUIRE(holds(evaluator.value(0), value_of(*graph, row, digits(x))));
+      const Digits value = value_of(*graph, row, digits(x));
+      if (!isfinite(value)) continue;  // beyond the exponents of the reference
+      REQUIRE(holds(evaluator.value(0), value));
       if (sample % 2 == 1) continue;
       // Away from kinks, where differences are none.
       for (int a = 0; a < 3; ++a) {
         const Digits exact = derivative_of(*graph, row, digits(x), a),
                      room = Digits(1e-20) * (1 + abs(exact));
+        if (!isfinite(exact)) continue;
         const Interval first = derivative(evaluator, 0, a);
         REQUIRE(Digits(first.lower) <= exact + room);
         REQUIRE(exact - room <= Digits(first.upper));

@@ -95,10 +95,10 @@ inline Digits value_of(const formulas::Graph& graph, int node, const std::vector
         result = abs(a);
         break;
       case Operation::minimum:
-        result = a < b ? a : b;
+        result = isnan(a) || isnan(b) ? a + b : (a < b ? a : b);
         break;
       case Operation::maximum:
-        result = a > b ? a : b;
+        result = isnan(a) || isnan(b) ? a + b : (a > b ? a : b);
         break;
     }
   }
