@@ -161,6 +161,7 @@ TEST_CASE("pictures of sets have three ticks across where their texts have room"
       const double place = std::stod(attribute(*text, "x")), half = text_width(text->data()) / 2;
       CHECK(place - half > before);
       before = place + half;
+      CHECK(before <= std::stod(attribute(tree.get_child("svg"), "width")));
       places.push_back(place);
     }
     return places.size();

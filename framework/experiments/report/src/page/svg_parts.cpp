@@ -69,11 +69,19 @@ std::vector<double> ticks_of_y(const Axis& y) {
   return y.upright(static_cast<int>((y.begin - y.end) / 45));
 }
 
+/// Of the text of a tick of x: that of the tick, but where the text would leave the drawing.
+double centre_below(const Axis& x, double tick, const std::string& text) {
+  return std::min(x(tick), x.end + 13 - text_width(text) / 2);
+}
+
 /// Do the texts of these ticks have room beside each other?
 bool have_room(const Axis& x, const std::vector<double>& ticks) {
-  for (std::size_t i = 1; i < ticks.size(); ++i) {
-    const double texts = text_width(x.text(ticks[i - 1])) + text_width(x.text(ticks[i]));
-    if (x(ticks[i]) - x(ticks[i - 1]) < texts / 2 + 10) return false;
+  double end = -INFINITY;  // of the text before
+  for (const double tick : ticks) {
+    const std::string text = x.text(tick);
+    const double centre = centre_below(x, tick, text), half = text_width(text) / 2;
+    if (centre - half < end + 10) return false;
+    end = centre + half;
   }
   return true;
 }
@@ -112,7 +120,7 @@ void draw_frame(Drawing& drawing, const Frame& frame) {
                                  ? x.text(tick)
                                  : shortened(frame.x_names[static_cast<std::size_t>(tick)], room);
     drawing.line({x(tick), y.end}, {x(tick), bottom}, rule);
-    drawing.text({x(tick), bottom + 17}, text, at_middle(soft));
+    drawing.text({centre_below(x, tick, text), bottom + 17}, text, at_middle(soft));
   }
   for (const double tick : ticks_of_y(y)) {
     drawing.line({x.begin, y(tick)}, {x.end, y(tick)}, rule);
