@@ -58,7 +58,7 @@ class Curve {
 
   /// Bounds of ψ(t) - slope t over the domain: the values at the ends of pieces over which it is
   /// monotone, and of small pieces over which that is not proven.
-  Interval bounds(double slope) const { return bounds(slope, domain_, most_halvings); }
+  Interval bounds(double slope) const { return bounds(slope, domain_, infinity, 0); }
 
  private:
   Interval at(double t) const { return values(point(t)); }
@@ -66,21 +66,24 @@ class Curve {
   Interval derivative(Interval t) const {
     return sign_ * first_derivative(node_, t, range_of(node_, t, {0, 0}, rounding_), rounding_);
   }
-  Interval bounds(double slope, Interval piece, int halvings) const {
+  /// `before`: the width of the derivative over twice the piece; where halving does not narrow it
+  /// any more, rounding is all that is left.
+  Interval bounds(double slope, Interval piece, double before, int halvings) const {
     const Interval rises = derivative(piece) - point(slope);
     const auto left_over = [&](double t) { return at(t) - slope * point(t); };
     if (rises.lower >= 0 || rises.upper <= 0)
       return hull(left_over(piece.lower), left_over(piece.upper));
-    const double center = std::clamp(middle(piece), piece.lower, piece.upper);
-    if (halvings > 0)
-      return hull(bounds(slope, {piece.lower, center}, halvings - 1),
-                  bounds(slope, {center, piece.upper}, halvings - 1));
+    const double center = std::clamp(middle(piece), piece.lower, piece.upper),
+                 width = rises.upper - rises.lower;
+    if (halvings < sure_halvings || (halvings < most_halvings && width < 0.75 * before))
+      return hull(bounds(slope, {piece.lower, center}, width, halvings + 1),
+                  bounds(slope, {center, piece.upper}, width, halvings + 1));
     const Interval natural = values(piece) - slope * piece;
     if (!rises.is_finite()) return natural;
     return intersection(natural, left_over(center) + rises * (piece - point(center)));
   }
 
-  static constexpr int most_halvings = 12;
+  static constexpr int sure_halvings = 3, most_halvings = 12;
   const Node& node_;
   Interval domain_;
   Rounding rounding_;
