@@ -175,6 +175,23 @@ TEST_CASE("noise-free plants, also badly scaled ones, are never proven to have n
   }
 }
 
+TEST_CASE("parts that underflow prove nothing") {
+  // exp(-b²) leaves the normal numbers where b has grown.
+  Json system = {{"states", {"a", "b"}}};
+  system["f"] = {"0.629*a + 14.6*sin(exp(-b^2))", "1.119*b"};
+  system["g"] = {"b - 0.0028*a"};
+  system["X0"] = {{"center", {29, 0.084}}, {"generators", {{36, 0}, {0, 0.1}}}};
+  system["disturbances"] = {"w"};
+  system["noises"] = {"v"};
+  system["W"] = system["V"] = {{"center", {0}}, {"generators", {{0}}}};
+  const auto model = model_of(system);
+  for (const Method& method : methods()) {
+    CAPTURE(std::string(method.reference));
+    for (std::uint64_t seed = 1; seed <= 5; ++seed)
+      CHECK(follow(model, Json::parse("[[]]"), method, seed, 120) == 120);
+  }
+}
+
 TEST_CASE("twelve states that turn without noise, through zero again and again") {
   Json system = {{"noises", {"v"}}, {"disturbances", {"w"}}};
   Json center = Json::array(), generators = Json::array();

@@ -161,3 +161,14 @@ TEST_CASE("a repaired point is proven, a point that cannot be repaired is not") 
                             Vector{{.25, .25}}));  // dependent rows
   CHECK_FALSE(repair_radius(Matrix{{0.0, 0.0}}, Vector{{1.0}}, Vector{{0.0, 0.0}}));
 }
+
+TEST_CASE("rows of subnormal numbers are no proof that a set is empty") {
+  LineForm set = make_box(Box{Vector::Constant(1, -1), Vector::Constant(1, 1)});
+  for (const double size : {1.0, 1e-200, 1e-312}) {
+    set.A = Matrix::Constant(1, set.G.cols(), size);
+    set.b = Vector::Constant(1, 1.5 * size);  // no factor is 1.5
+    set.S = Matrix(1, 0);
+    CAPTURE(size);
+    CHECK(is_empty(set) == (size > 1e-300 ? Answer::yes : Answer::unknown));
+  }
+}

@@ -10,11 +10,15 @@ namespace cordon::formulas {
 
 namespace {
 
-/// Ranges narrower than this share of their size are constants.
-constexpr double narrow = 1e-14;
+/// Ranges narrower than this share of their size are constants, and so are those narrower than
+/// this: products of what is made of them would underflow, and margins of proofs with them.
+constexpr double narrow = 1e-14, smallest_width = 1e-150;
 
 /// Or unbounded: nothing can be said of what follows.
-bool is_narrow(Interval x) { return !x.is_finite() || x.upper - x.lower <= narrow * x.magnitude(); }
+bool is_narrow(Interval x) {
+  const double width = x.upper - x.lower;
+  return !x.is_finite() || width <= std::max(smallest_width, narrow * x.magnitude());
+}
 
 double coefficient(const AffineExpression& x, std::size_t i) {
   return i < x.coefficients.size() ? x.coefficients[i] : 0.0;

@@ -76,8 +76,9 @@ struct BoxedProgram::State {
   /// Nothing is said about emptiness by less than what rounding may have added.
   bool prove_empty(const Vector& y, double& margin) const {
     margin = certificates.farkas_margin(y);
-    return margin > tolerances::proof_margin *
-                        y.cwiseAbs().dot(b.cwiseAbs() + certificates.reach() + accuracy.magnitude);
+    const Vector terms = b.cwiseAbs() + certificates.reach() + accuracy.magnitude;
+    return margin >
+           tolerances::proof_margin * y.cwiseAbs().dot(terms.cwiseMax(tolerances::smallest_terms));
   }
 
   /// A proof that P is empty, if there is one: the proposal, or what the question itself finds.

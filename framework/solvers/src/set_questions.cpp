@@ -108,7 +108,8 @@ class Infeasibility {
     if (!margin) return false;
     proof.margin = margin->get_d();
     const Vector weight = b_.cwiseAbs() + rows_.A.cwiseAbs().rowwise().sum() + magnitude_;
-    return proof.margin > tolerances::proof_margin * proof.data.cwiseAbs().dot(weight);
+    return proof.margin > tolerances::proof_margin * proof.data.cwiseAbs().dot(weight.cwiseMax(
+                                                         tolerances::smallest_terms));
   }
 
   Certificate settled() {

@@ -16,6 +16,9 @@ inline constexpr double elimination_noise = 1e-13;
 /// terms that it is made of, for these come from rounded operations themselves.
 inline constexpr double proof_margin = 1e-10;
 
+/// The terms of a proof count as at least this: below, shares of them and products underflow.
+inline constexpr double smallest_terms = 1e-300;
+
 /// Rows or columns are dependent where what is left of one is this share of the largest: numbers in
 /// decimals that are rounded to doubles keep more, and matrices of measured plants are not known to
 /// as many digits.
