@@ -37,7 +37,8 @@ study = {
     "pipelines": [
         {"name": "interval", "backend": "interval",
          "observer": {"type": "nonlinear", "method": "interval", "max_generators": 400}},
-        {"name": "zonotope", "backend": {"type": "zonotope", "strip": "segment", "reduction": "girard"},
+        {"name": "zonotope",
+         "backend": {"type": "zonotope", "strip": "segment", "reduction": "girard"},
          "observer": {"type": "nonlinear", "max_generators": 400}},
     ],
     "metrics": ["radius", "contains_truth", "step_time"],
