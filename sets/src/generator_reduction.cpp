@@ -136,7 +136,7 @@ ReductionBox along_axes(const Matrix& G, Index max_generators, Size size, Axes k
   for (const Rows& rows : box.groups) {
     const Matrix part = scaled(rows, Eigen::all);
     box.Q(rows, rows) =
-        kind == Axes::principal ? linalg::svd(part).U : linalg::orthogonal_axes(part);
+        kind == Axes::principal ? linalg::principal_axes(part) : linalg::orthogonal_axes(part);
   }
   return box;
 }

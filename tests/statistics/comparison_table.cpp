@@ -198,7 +198,7 @@ TEST_CASE("repetitions: deviations, infinite and missing numbers, failed points"
   add(1, 2, .5, 1, "broken");
   const ComparisonTable found = compared(table);
   CHECK(titles(found) ==
-        Texts{"budget", "pipeline", "mean radius", "× best", "detection delay", "failed"});
+        Texts{"budget", "pipeline", "mean radius", "× best", "detection delay [steps]", "failed"});
   CHECK(texts(found, 0) == Texts{"10", "first", "2 ± 1", "1", "3.500 ± 0.71 [2]", "0/3"});
   CHECK(texts(found, 1) == Texts{"10", "second", "2 (∞: 1)", "–", "2", "1/3"});
   REQUIRE(found.notes.size() == 2);

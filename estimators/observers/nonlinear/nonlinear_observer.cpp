@@ -17,18 +17,23 @@ namespace cordon::estimators {
 
 namespace {
 
+bool has_boxes_only(const Params& params) {
+  return params.text("method") == "natural" || params.text("method") == "interval";
+}
+
 NonlinearOptions options_from(const Params& params, const BackendInfo& backend) {
   NonlinearOptions options;
   // Cuts by the box make sets wider where intersections are enclosed.
   options.row_by_row = !backend.intersections;
   const std::string& method = params.text("method");
   options.natural_only = method == "natural";
-  options.boxes_only = options.natural_only || method == "interval";
+  options.boxes_only = has_boxes_only(params);
   options.relaxes = method == "relaxation";
   if (method == "mean_value") options.form = formulas::AffineForm::mean_value;
   if (method == "dc") options.form = formulas::AffineForm::convex_differences;
   options.contracts = params.flag("contraction");
   options.carries_box = params.flag("box");
+  options.parts = params.integer("parts");
   options.budget = budget_from(params);
   return options;
 }
@@ -139,6 +144,9 @@ std::vector<Diagnostic> check_nonlinear(const ObserverContext& context, const Pa
                         "\"relaxation\" needs sets with exact intersections, and \"" +
                             context.backend->info().name + "\" encloses them",
                         "use the backend \"constrained_zonotope\", or another method"});
+  if (params.integer("parts") > 1 && !params.flag("box") && !has_boxes_only(params))
+    problems.push_back({"/parts", "parts narrow the box beside the set, and there is none",
+                        "leave out \"box\": false"});
   check_bounded_start(context, params, problems);
   check_noises(context, problems);
   return problems;
@@ -157,6 +165,10 @@ void register_nonlinear(Registrar& registrar) {
       {"natural", "interval", "mean_value", "first_order", "dc", "relaxation"}, "first_order");
   schema.flag("contraction", "contract a box by the outputs and invariants (HC4)", true);
   schema.flag("box", "carry a box beside the set: the estimate is their intersection", true);
+  schema.integer("parts",
+                 "at most so many parts into which the box is cut for its prediction and the "
+                 "contraction that follows",
+                 1, 1, 64);
   registrar.add(ObserverEntry{
       {"nonlinear",
        "prediction and correction for formulas, enclosed by ranges and derivatives over boxes; any "

@@ -7,6 +7,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "observers/nonlinear/box_parts.hpp"
 
 namespace cordon::estimators {
 
@@ -16,15 +17,6 @@ using formulas::BoxEnclosure;
 
 /// Of a set that tells nothing of a coordinate any more: its width beside that of the box.
 constexpr double lost_width = 4;
-/// A contraction that shrinks no side by more than this share of it is the last one.
-constexpr double least_progress = 0.01;
-/// Nominal proofs exceed rounding errors this many times.
-constexpr double rounding_doubt = tolerances::proof_margin / tolerances::product_noise;
-
-Box intersected(const Box& a, const Box& b) {
-  return {a.lower.cwiseMax(b.lower), a.upper.cwiseMin(b.upper)};
-}
-
 }  // namespace
 
 NonlinearRecursion::NonlinearRecursion(const Model& model,
@@ -44,6 +36,9 @@ NonlinearRecursion::NonlinearRecursion(const Model& model,
   contracts_ = options_.contracts && (options_.boxes_only || options_.row_by_row ||
                                       options_.relaxes || has_bent_outputs());
   needs_predicted_hull_ = contracts_ || options_.row_by_row || has_bent_outputs();
+  if (options_.parts > 1)
+    f_of_part_.emplace(model_->f, model_->states(), options_.form, backend_->info().rounding,
+                       model_->undefined);
   if (model_->admissible) take_admissible(*model_->admissible);
 }
 
@@ -70,6 +65,7 @@ void NonlinearRecursion::take_admissible(const LineForm& set) {
 
 bool NonlinearRecursion::start(Enclosure X) {
   before_.reset();
+  images_.clear();
   set(std::move(X));
   B_ = hull();
   return admit();
@@ -82,7 +78,7 @@ bool NonlinearRecursion::admit() {
       backend_->box(B_)->is_subset_of(*admissible_) != Answer::yes)
     set(backend_->intersection(X_, Matrix::Identity(B_.dim(), B_.dim()), admissible_));
   B_ = intersected(B_, admissible_hull_);
-  if (options_.boxes_only && !B_.is_empty()) set_box();
+  if (options_.boxes_only) hull_ = B_;
   return narrow_box();
 }
 
@@ -108,10 +104,10 @@ const Box& NonlinearRecursion::hull() const {
   return box;
 }
 
-void NonlinearRecursion::set_variables(std::vector<Interval>& variables, const Box& noise,
-                                       VectorIn u, Index k) const {
+void NonlinearRecursion::set_variables(std::vector<Interval>& variables, const Box& B,
+                                       const Box& noise, VectorIn u, Index k) const {
   std::size_t at = 0;
-  for (const Box* box : {&B_, &noise})
+  for (const Box* box : {&B, &noise})
     for (Index i = 0; i < box->dim(); ++i) variables[at++] = {box->lower[i], box->upper[i]};
   for (const double known : u) variables[at++] = {known, known};
   const auto time = static_cast<double>(k);
@@ -120,27 +116,59 @@ void NonlinearRecursion::set_variables(std::vector<Interval>& variables, const B
 
 std::string NonlinearRecursion::row_name(Index row) const { return "x_" + std::to_string(row + 1); }
 
+Box NonlinearRecursion::range_of(const BoxEnclosure& enclosure) const {
+  Box range = Box::space(model_->states());
+  for (Index row = 0; row < range.dim(); ++row) {
+    if (!enclosure.is_enclosed(row)) continue;
+    const Interval values = options_.natural_only ? enclosure.natural(row) : enclosure.range(row);
+    const double near = room(enclosure.rounding_error(row));
+    range.lower[row] = directed::plus(values.lower, -near).lower;
+    range.upper[row] = directed::plus(values.upper, near).upper;
+  }
+  return range;
+}
+
+Box NonlinearRecursion::predicted_range(VectorIn u, Index k) {
+  set_variables(f_variables_, B_, W_hull_, u, k);
+  f_.set_box(f_variables_);
+  Box range = range_of(f_);
+  if (options_.parts > 1) cut_into_parts(range, u, k);
+  for (Index row = 0; row < range.dim(); ++row) {
+    const bool is_enclosed =
+        f_.is_enclosed(row) ||
+        (!options_.relaxes && std::isfinite(range.lower[row]) && std::isfinite(range.upper[row]));
+    if (!is_enclosed)
+      throw Error(Errc::not_enclosed, "no bounded set encloses " + row_name(row) + " at k = " +
+                                          std::to_string(k + 1) + ": " + f_.why_not_enclosed(row));
+  }
+  return range;
+}
+
+/// A row that is enclosed in parts alone is a box.
+AffineRows NonlinearRecursion::predicted_rows(const Box& range) const {
+  AffineRows form = affine_rows(f_, all_rows(range.dim()));
+  for (Index row = 0; row < range.dim(); ++row) {
+    if (f_.is_enclosed(row)) {
+      form.radius[row] = directed::plus(form.radius[row], room(f_.rounding_error(row))).upper;
+      continue;
+    }
+    const double middle = 0.5 * range.lower[row] + 0.5 * range.upper[row];
+    form.offset[row] = middle;
+    form.radius[row] = std::max(directed::plus(range.upper[row], -middle).upper,
+                                directed::plus(middle, -range.lower[row]).upper);
+  }
+  return form;
+}
+
 bool NonlinearRecursion::predict(VectorIn u, Index k) {
   if (B_.is_empty()) return false;
   const Index n = model_->states();
   if (!B_.is_bounded())
     throw Error(Errc::not_enclosed, "the estimate at k = " + std::to_string(k) +
                                         " is unbounded, and formulas are enclosed over boxes");
-  set_variables(f_variables_, W_hull_, u, k);
-  f_.set_box(f_variables_);
-  Box range = Box::space(n);
-  for (Index row = 0; row < n; ++row) {
-    if (!f_.is_enclosed(row))
-      throw Error(Errc::not_enclosed, "no bounded set encloses " + row_name(row) + " at k = " +
-                                          std::to_string(k + 1) + ": " + f_.why_not_enclosed(row));
-    const Interval values = options_.natural_only ? f_.natural(row) : f_.range(row);
-    const double near = room(f_.rounding_error(row));
-    range.lower[row] = directed::plus(values.lower, -near).lower;
-    range.upper[row] = directed::plus(values.upper, near).upper;
-  }
+  Box range = predicted_range(u, k);
   if (options_.boxes_only) {
-    B_ = range;
-    set_box();
+    hull_ = B_ = range;  // the set follows with the correction
     return admit();
   }
   if (options_.relaxes) {
@@ -148,9 +176,7 @@ bool NonlinearRecursion::predict(VectorIn u, Index k) {
     B_ = model_->admissible ? intersected(range, admissible_hull_) : range;
     return !B_.is_empty();
   }
-  AffineRows form = affine_rows(f_, all_rows(n));
-  for (Index row = 0; row < n; ++row)
-    form.radius[row] = directed::plus(form.radius[row], room(f_.rounding_error(row))).upper;
+  const AffineRows form = predicted_rows(range);
   const Enclosure rest = backend_->box({-form.radius, form.radius});
   const Matrix disturbed = form.slope.rightCols(model_->disturbances()),
                unit = Matrix::Identity(n, n);
@@ -171,47 +197,10 @@ double NonlinearRecursion::room(double error, double value) const {
   return error + tolerances::product_noise * std::abs(value);
 }
 
-bool NonlinearRecursion::contract_row(Index row, double value, double room) {
-  before_row_ = g_variables_;
-  if (g_.evaluator().contract(g_variables_, row, {value - room, value + room})) return true;
-  g_variables_ = before_row_;
-  if (room == 0) return false;
-  const double far = rounding_doubt * room;
-  if (!g_.evaluator().contract(g_variables_, row, {value - far, value + far})) return false;
-  g_variables_ = before_row_;  // left as it is
-  return true;
-}
-
 std::vector<Index> NonlinearRecursion::rows_of(const Sample& now) const {
   std::vector<Index> rows = present_outputs(now);
   for (Index i = 0; i < model_->invariants; ++i) rows.push_back(model_->outputs() + i);
   return rows;
-}
-
-bool NonlinearRecursion::contract(const Sample& now) {
-  const std::vector<Index> rows = rows_of(now);
-  set_variables(g_variables_, V_hull_, now.u, now.k);
-  g_.evaluator().evaluate(g_variables_);
-  g_.evaluator().bound_rounding();
-  std::vector<double> rooms;
-  for (const Index row : rows)
-    rooms.push_back(room(g_.evaluator().rounding_error(row), target(row, now)));
-  bool goes_on = true;
-  for (int sweep = 0; sweep < options_.most_sweeps && goes_on; ++sweep) {
-    const std::vector<Interval> before = g_variables_;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      if (!contract_row(rows[i], target(rows[i], now), rooms[i])) return false;
-    goes_on = false;
-    for (Index i = 0; i < model_->states(); ++i) {
-      const Interval was = before[as_size(i)], is = g_variables_[as_size(i)];
-      goes_on = goes_on || is.upper - is.lower < (1 - least_progress) * (was.upper - was.lower);
-    }
-  }
-  for (Index i = 0; i < model_->states(); ++i) {
-    B_.lower[i] = g_variables_[as_size(i)].lower;
-    B_.upper[i] = g_variables_[as_size(i)].upper;
-  }
-  return true;
 }
 
 bool NonlinearRecursion::narrow_box() {
@@ -273,7 +262,7 @@ bool NonlinearRecursion::keep_to_box() {
 
 bool NonlinearRecursion::correct_rows(const Sample& now, const std::vector<Index>& rows) {
   if (!B_.is_bounded()) return narrow_box();  // no affine form
-  set_variables(g_variables_, V_hull_, now.u, now.k);
+  set_variables(g_variables_, B_, V_hull_, now.u, now.k);
   g_.set_box(g_variables_);
   std::vector<Index> usable;
   std::ranges::copy_if(rows, std::back_inserter(usable),

@@ -2,7 +2,9 @@
 // Prediction and correction for models by formulas, on any backend:
 //   x_{k-1} ∈ X ∩ B, F = f(·, u_{k-1}, k-1):
 //     F(z) ∈ F(h) + J (z - h) ± r over z = (x, w) ∈ B × hull W, so that
-//     X⁺ = J_x X ⊕ J_w W ⊕ {F(h) - J h} ⊕ box(r),   B⁺ = hull X⁺ ∩ range of F over B × hull W
+//     X⁺ = J_x X ⊕ J_w W ⊕ {F(h) - J h} ⊕ box(r),   B⁺ = hull X⁺ ∩ range of F over B × hull W;
+//     B may be cut into parts: the range is then the hull of theirs, which are contracted one by
+//     one
 //   y_k: B is contracted by g(x, v, u_k, k) = y_k and h(x) = 0 (HC4), X is cut by B where B is
 //     narrower, and then by y_k - g(h) + C h + D h_v - C x ∈ D V ⊕ box(r), with g enclosed as F.
 // X and B hold the state at all times: each is an enclosure, their intersection is the estimate.
@@ -17,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "cordon/core/tolerances.hpp"
 #include "cordon/formulas/box_enclosure.hpp"
 #include "cordon/formulas/relaxation.hpp"
 #include "cordon/interfaces/backend.hpp"
@@ -36,6 +39,7 @@ struct NonlinearOptions {
   bool contracts = true;    ///< by HC4, beside the affine forms
   bool carries_box = true;  ///< else B is the hull of X at each step
   bool row_by_row = false;  ///< corrections renew the affine form after each row
+  Index parts = 1;          ///< at most so many boxes that B is cut into for its prediction
   int most_sweeps = 20;     ///< of contraction over all rows
   Budget budget = {};
 };
@@ -64,8 +68,15 @@ class NonlinearRecursion {
 
  private:
   /// The box of x, of w or v, u and k, as variables of f or g.
-  void set_variables(std::vector<Interval>& variables, const Box& noise, VectorIn u, Index k) const;
+  void set_variables(std::vector<Interval>& variables, const Box& B, const Box& noise, VectorIn u,
+                     Index k) const;
+  /// Of f over B × hull W, and room for rounding.
+  Box predicted_range(VectorIn u, Index k);
+  Box range_of(const formulas::BoxEnclosure& enclosure) const;
+  void cut_into_parts(Box& range, VectorIn u, Index k);
+  AffineRows predicted_rows(const Box& range) const;
   bool contract(const Sample& now);
+  bool contract(const Sample& now, Box& box);
   bool contract_row(Index row, double value, double room);
   bool cut_by_box();
   void cut(const std::vector<Index>& coordinates);
@@ -92,10 +103,15 @@ class NonlinearRecursion {
   double room(double error, double value = 0) const;
   std::string row_name(Index row) const;
 
+  /// Nominal proofs exceed rounding errors this many times.
+  static constexpr double rounding_doubt = tolerances::proof_margin / tolerances::product_noise;
+
   std::shared_ptr<const NonlinearModel> model_;
   std::shared_ptr<const SetBackend> backend_;
   NonlinearOptions options_;
   formulas::BoxEnclosure f_, g_;
+  std::optional<formulas::BoxEnclosure> f_of_part_;  ///< where B is cut
+  std::vector<Box> images_;                          ///< of the parts, until they are contracted
   /// Contraction is left out where it finds nothing, and the hull of the prediction where nothing
   /// rests on it.
   bool contracts_ = false, needs_predicted_hull_ = false;

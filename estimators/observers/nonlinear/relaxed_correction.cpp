@@ -32,9 +32,7 @@ std::vector<AffineExpression> first_variables(const Relaxation& relaxation, Inde
 
 std::vector<AffineExpression> NonlinearRecursion::successors(RelaxedStep& step) {
   const Index n = model_->states();
-  const Box contracted = std::exchange(B_, before_->B);
-  set_variables(f_variables_, W_hull_, before_->u, before_->k);
-  B_ = contracted;
+  set_variables(f_variables_, before_->B, W_hull_, before_->u, before_->k);
   formulas::Evaluator& f = f_.evaluator();
   f.evaluate(f_variables_);
   f.bound_rounding();
@@ -71,7 +69,7 @@ bool NonlinearRecursion::correct_relaxed(const Sample& now) {
     if (known.lower > range.lower || known.upper < range.upper)
       step.require(states[as_size(i)], known);
   }
-  set_variables(g_variables_, V_hull_, now.u, now.k);
+  set_variables(g_variables_, B_, V_hull_, now.u, now.k);
   formulas::Evaluator& g = g_.evaluator();
   g.evaluate(g_variables_);
   g.bound_rounding();

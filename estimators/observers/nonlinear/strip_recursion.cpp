@@ -77,7 +77,7 @@ Matrix reduced_by_components(const Matrix& given, Index most) {
   Matrix smallest(n, m - kept), made(n, most);
   for (Index j = 0; j < m - kept; ++j) smallest.col(j) = G.col(order[as_size(j)]);
   for (Index j = 0; j < kept; ++j) made.col(j) = G.col(order[as_size(m - kept + j)]);
-  const Matrix U = linalg::svd(smallest).U.leftCols(n);
+  const Matrix U = linalg::principal_axes(smallest).leftCols(n);
   const Vector radii = (U.transpose() * smallest).cwiseAbs().rowwise().sum();
   made.rightCols(n) = U * radii.asDiagonal();
   return made;

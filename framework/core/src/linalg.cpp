@@ -52,6 +52,11 @@ Svd svd(MatrixIn A) {
   return {decomposition.matrixU(), decomposition.singularValues(), decomposition.matrixV()};
 }
 
+Matrix principal_axes(MatrixIn A) {
+  if (A.rows() == 0 || A.cols() == 0) return Matrix::Identity(A.rows(), A.rows());
+  return Eigen::JacobiSVD<Matrix>(A, Eigen::ComputeFullU).matrixU();
+}
+
 Index rank(MatrixIn A, double relative_tolerance) {
   return count_above(svd(A).sigma, relative_tolerance);
 }

@@ -197,6 +197,19 @@ Interval BoxEnclosure::range(Index row) const {
   return range;
 }
 
+double BoxEnclosure::slope_spread(Index variable) const {
+  double sum = 0;
+  for (Index row = 0; row < function().rows(); ++row) {
+    for (std::size_t e = 0; e < evaluator_.partials(row); ++e) {
+      if (evaluator_.partial(row, e).variable != variable) continue;
+      const Interval slope = gradient_[first_entry(row) + e];
+      const double spread = 0.5 * slope.upper - 0.5 * slope.lower;
+      sum += is_enclosed(row) && std::isfinite(spread) ? spread : infinity;
+    }
+  }
+  return sum;
+}
+
 BoxEnclosure::Affine BoxEnclosure::affine(Index row, Eigen::Ref<Eigen::RowVectorXd> slope) const {
   slope.setZero();
   std::optional<Form> found = first_order(row);

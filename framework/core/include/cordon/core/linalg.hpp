@@ -19,6 +19,9 @@ struct Svd {
 /// Full singular value decomposition. Empty matrices give identities.
 Svd svd(MatrixIn A);
 
+/// U of the decomposition alone, the same numbers: V of a wide matrix costs much more.
+Matrix principal_axes(MatrixIn A);
+
 /// Number of singular values above `relative_tolerance` · σ₁ (0 for a zero matrix).
 Index rank(MatrixIn A, double relative_tolerance = 1e-10);
 

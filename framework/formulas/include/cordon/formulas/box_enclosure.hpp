@@ -58,6 +58,10 @@ class BoxEnclosure {
   /// different paths may not.)
   Interval range(Index row) const;
 
+  /// Σ over the rows of rad [J]_i, not rounded upward: by how much their slopes in z_i change over
+  /// the box. Infinite where a derivative is not bounded, or a row that depends on z_i is not.
+  double slope_spread(Index variable) const;
+
   /// F_row(z) ∈ value + slope · (z - h) ± radius for all z of the box.
   struct Affine {
     double value = 0, radius = 0;
