@@ -143,6 +143,35 @@ TEST_CASE("linear models written as formulas have the sets of linear recursions"
   }
 }
 
+TEST_CASE("linear models written as formulas have the boxes of interval arithmetic") {
+  Random random(7);
+  for (int seed = 0; seed < 20; ++seed) {
+    const Index n = 2 + seed % 3;
+    const Linear linear = random_linear(random, n, 1);
+    const Model model = model_of(linear.system);
+    const Box W = interval_hull(model.W);
+    for (const Method& method : methods()) {
+      if (!method.options.boxes_only) continue;
+      CAPTURE(seed);
+      CAPTURE(std::string(method.reference));
+      const auto backend = examples::backend(method.backend);
+      NonlinearRecursion recursion(model, backend, method.options);
+      recursion.start(backend->import(model.X0));
+      Box box = recursion.box();
+      for (Index k = 0; k < 5; ++k) {
+        REQUIRE(recursion.predict(Vector(), k));
+        const Vector center = linear.A * box.center() + linear.Bw * W.center(),
+                     radius =
+                         linear.A.cwiseAbs() * box.radius() + linear.Bw.cwiseAbs() * W.radius();
+        box = {center - radius, center + radius};
+        const double size = 1 + box.center().cwiseAbs().maxCoeff() + box.radius().maxCoeff();
+        CHECK((recursion.box().lower - box.lower).cwiseAbs().maxCoeff() <= 1e-12 * size);
+        CHECK((recursion.box().upper - box.upper).cwiseAbs().maxCoeff() <= 1e-12 * size);
+      }
+    }
+  }
+}
+
 namespace {
 
 /// The system in states that are `scale` times as large.
