@@ -175,6 +175,30 @@ TEST_CASE("noise-free plants, also badly scaled ones, are never proven to have n
   }
 }
 
+TEST_CASE("an output beyond the room for its rounding, but not far beyond, proves nothing") {
+  // At 0 the box has no width, and 1 + a + v is 1 but for rounding errors of some 1e-15.
+  Json system = {{"states", {"a"}}, {"disturbances", {"w"}}, {"noises", {"v"}}};
+  system["f"] = {"a + w"};
+  system["g"] = {"1 + a + v", "exp(a)"};
+  system["X0"] = system["W"] = system["V"] = {{"center", {0}}, {"generators", {{0}}}};
+  const auto model = model_of(system);
+  for (const Method& method : methods()) {
+    if (!method.options.boxes_only) continue;
+    CAPTURE(std::string(method.reference));
+    const auto possible = [&](double output) {
+      const auto backend = examples::backend(method.backend);
+      NonlinearRecursion recursion(model, backend, method.options);
+      recursion.start(backend->import(model.X0));
+      return recursion.correct({0, Vector(), Vector{{output, 1.0}}});
+    };
+    CHECK(possible(1));
+    CHECK(possible(1 + 1e-12));
+    CHECK(possible(1 - 1e-12));
+    CHECK_FALSE(possible(1 + 1e-6));
+    CHECK_FALSE(possible(1 - 1e-6));
+  }
+}
+
 TEST_CASE("parts that underflow prove nothing") {
   // exp(-b²) leaves the normal numbers where b has grown.
   Json system = {{"states", {"a", "b"}}};
