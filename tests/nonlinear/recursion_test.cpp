@@ -175,6 +175,40 @@ TEST_CASE("noise-free plants, also badly scaled ones, are never proven to have n
   }
 }
 
+TEST_CASE("a reduced set is beside the box that it had, which is said to be narrower") {
+  const Json all = reference();
+  int wider = 0;
+  for (const Json& example : all["examples"]) {
+    const auto model = model_of(example["system"]);
+    for (const Method& method : methods()) {
+      if (method.options.boxes_only || !method.options.carries_box) continue;
+      CAPTURE(example["name"].get<std::string>());
+      CAPTURE(std::string(method.reference));
+      const auto backend = examples::backend(method.backend);
+      NonlinearOptions chosen = method.options;
+      chosen.budget = {4, 1};
+      NonlinearRecursion recursion(model, backend, chosen);
+      recursion.start(backend->import(model.X0));
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (k > 0) recursion.predict(vector_of(example["u"][k - 1]), static_cast<Index>(k) - 1);
+        REQUIRE(recursion.correct(
+            {static_cast<Index>(k), vector_of(example["u"][k]), vector_of(example["y"][k])}));
+        const Box before = recursion.box();
+        recursion.reduce();
+        CHECK(recursion.box().lower == before.lower);
+        CHECK(recursion.box().upper == before.upper);
+        const Box own = recursion.set()->interval_hull();
+        if ((own.lower.array() >= before.lower.array() - 1e-6).all() &&
+            (own.upper.array() <= before.upper.array() + 1e-6).all())
+          continue;
+        ++wider;
+        CHECK(recursion.is_box_narrower());
+      }
+    }
+  }
+  CHECK(wider > 20);
+}
+
 TEST_CASE("an output beyond the room for its rounding, but not far beyond, proves nothing") {
   // At 0 the box has no width, and 1 + a + v is 1 but for rounding errors of some 1e-15.
   Json system = {{"states", {"a"}}, {"disturbances", {"w"}}, {"noises", {"v"}}};
