@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What every method has to keep to: linear models are estimated as by linear observers, scaled
 // states and permuted ones alike, and larger sets have larger images.
+#include <cstdint>
 #include <cstdio>
 #include <random>
 #include <regex>
@@ -11,6 +12,7 @@
 #include "input_design/plugins.hpp"
 #include "nonlinear/methods.hpp"
 #include "nonlinear/reference.hpp"
+#include "observers/nonlinear/affine_rows.hpp"
 
 using namespace cordon;
 using namespace cordon::test;
@@ -264,5 +266,25 @@ TEST_CASE("a smaller start has smaller boxes at the next step") {
         CHECK(f.value(row).upper <= values[as_size(row)].upper);
       }
     }
+  }
+}
+
+TEST_CASE("affine rows hold what the rounding of their offset is off by") {
+  // (x - k) x at x = k is 0 with slope k: k² + offset is off by no more than the radius, in
+  // integers.
+  const auto product = function_of({{"states", {"x"}}}, "disturbances", {"(x - k)*x"});
+  formulas::BoxEnclosure enclosure(product, 1, AffineForm::first_order, Rounding::outward);
+  Random random(8);
+  for (int i = 0; i < 1000; ++i) {
+    const std::int64_t x =
+        2 * std::uniform_int_distribution<std::int64_t>(1 << 29, (1 << 30) - 1)(random) + 1;
+    const auto at = static_cast<double>(x);
+    enclosure.set_box(std::vector<Interval>{{at, at}, {at, at}});
+    const estimators::AffineRows rows = estimators::affine_rows(enclosure, {0});
+    REQUIRE(rows.slope(0, 0) == at);
+    const std::int64_t off = x * x + static_cast<std::int64_t>(rows.offset[0]);
+    CAPTURE(x);
+    CHECK(std::abs(off) <= static_cast<std::int64_t>(rows.radius[0]));
+    CHECK(rows.radius[0] <= 0x1p-50 * at * at);
   }
 }
