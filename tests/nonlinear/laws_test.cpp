@@ -190,8 +190,10 @@ Json scaled(Json system, const std::vector<double>& scale) {
     system["X0"]["center"][i] = scale[i] * system["X0"]["center"][i].get<double>();
     for (Json& entry : system["X0"]["generators"][i]) entry = scale[i] * entry.get<double>();
   }
-  for (const char* rows : {"g", "invariants"})
+  for (const char* rows : {"g", "invariants"}) {
+    if (!system.contains(rows)) continue;
     for (Json& row : system[rows]) row = replaced(row);
+  }
   return system;
 }
 
@@ -214,7 +216,8 @@ std::vector<Box> hulls_of(const Model& model, const Json& example, const Method&
 
 TEST_CASE("states in other units have the same sets in other units") {
   const std::vector<double> scale{3e4, 7e-4};
-  for (const Json& example : reference()["examples"]) {
+  const Json all = reference();
+  for (const Json& example : all["examples"]) {
     const Model model = model_of(example["system"]),
                 other = model_of(scaled(example["system"], scale));
     for (const Method& method : methods()) {
@@ -241,7 +244,8 @@ TEST_CASE("states in other units have the same sets in other units") {
 
 TEST_CASE("a smaller start has smaller boxes at the next step") {
   Random random(6);
-  for (const Json& example : reference()["examples"]) {
+  const Json all = reference();
+  for (const Json& example : all["examples"]) {
     const Model model = model_of(example["system"]);
     const Box outer = interval_hull(model.X0);
     formulas::Evaluator f(model.nonlinear->f, Rounding::nominal);

@@ -91,8 +91,10 @@ Json enlarged(Json system, const std::string& scale) {
     return formula;
   };
   for (Json& row : system["f"]) row = scale + "*(" + replaced(row) + ")";
-  for (const char* rows : {"g", "invariants"})
+  for (const char* rows : {"g", "invariants"}) {
+    if (!system.contains(rows)) continue;
     for (Json& row : system[rows]) row = replaced(row);
+  }
   for (Json& entry : system["X0"]["center"]) entry = std::stod(scale) * entry.get<double>();
   for (Json& row : system["X0"]["generators"])
     for (Json& entry : row) entry = std::stod(scale) * entry.get<double>();
@@ -102,7 +104,8 @@ Json enlarged(Json system, const std::string& scale) {
 }  // namespace
 
 TEST_CASE("states and disturbances in another order have the same boxes in that order") {
-  for (const Json& example : reference()["examples"]) {
+  const Json all = reference();
+  for (const Json& example : all["examples"]) {
     const Model model = model_of(example["system"]),
                 other = model_of(with_reversed_states(example["system"]));
     const Samples samples = samples_of(example, 6);
@@ -136,7 +139,8 @@ TEST_CASE("outputs in another order have the same boxes where no row comes first
 }
 
 TEST_CASE("one unit for all states is a convention of strips too") {
-  for (const Json& example : reference()["examples"]) {
+  const Json all = reference();
+  for (const Json& example : all["examples"]) {
     const Model model = model_of(example["system"]),
                 other = model_of(enlarged(example["system"], "1024"));
     const Samples samples = samples_of(example, 6);
