@@ -35,8 +35,10 @@ Model with(Model model, formulas::Undefined undefined, std::optional<LineForm> a
 }
 
 /// The box of x at the next time, without a sample of it.
-Box successor(const Model& model, const Method& method) {
-  const auto backend = examples::backend(method.backend);
+Box successor(const Model& model, const Method& method, const char* rounding = "nominal") {
+  Params params;
+  params.set("rounding", rounding);
+  const auto backend = examples::registry().make<BackendEntry>(method.backend, params);
   NonlinearRecursion recursion(model, backend, method.options);
   REQUIRE(recursion.start(backend->import(model.X0)));
   REQUIRE(recursion.predict(Vector(), 0));
@@ -123,6 +125,37 @@ TEST_CASE("an admissible set within the domain does the same, and cuts what foll
       CHECK(box.upper[0] >= std::min(value(1.5).upper + 0.01, 1.5));
       CHECK(box.lower[0] >= 0.25 - 1e-6);
       CHECK(box.upper[0] <= 1.5 + 1e-6);
+    }
+  }
+}
+
+TEST_CASE("an admissible set may end where a formula's domain ends") {
+  struct Ends {
+    const char* formula;
+    double lower, upper;  ///< of what is admissible
+  };
+  const Ends all[] = {{"sqrt(x)", 0, 1},         {"sqrt(x)", 0, 1e9},  {"sqrt(1 - x)", -3, 1},
+                      {"sqrt(x - 0.5)", 0.5, 9}, {"asin(x)", -1, 1},   {"acos(x) - 2", -1, 0.25},
+                      {"x^1.5", 0, 4},           {"sqrt(x) - x", 0, 2}};
+  for (const Ends& each : all) {
+    const Box admissible{Vector{{each.lower}}, Vector{{each.upper}}};
+    const Model model = with(model_of_formula(each.formula, each.lower - 1e-300, each.upper),
+                             formulas::Undefined::refused, make_box(admissible));
+    formulas::Evaluator f(model.nonlinear->f, Rounding::outward);
+    for (const Method& method : methods()) {
+      for (const char* rounding : {"nominal", "outward"}) {
+        CAPTURE(std::string(each.formula));
+        CAPTURE(std::string(method.reference));
+        CAPTURE(std::string(rounding));
+        const Box box = successor(model, method, rounding);
+        for (int i = 0; i <= 16; ++i) {
+          const double x = each.lower + i * (each.upper - each.lower) / 16;
+          const Interval y = f.evaluate_row(std::vector<Interval>{{x, x}, {0, 0}, {0, 0}}, 0);
+          if (y.lower > each.upper || y.upper < each.lower) continue;
+          CHECK(box.lower[0] <= y.upper);
+          CHECK(box.upper[0] >= y.lower);
+        }
+      }
     }
   }
 }

@@ -25,7 +25,7 @@ void NonlinearRecursion::cut_into_parts(Box& range, VectorIn u, Index k) {
   Box hull = Box::empty(B_.dim());
   for (const Box& part : parts_of(B_, cuts)) {
     set_variables(f_variables_, part, W_hull_, u, k);
-    f_of_part_->set_box(f_variables_);
+    enclose(*f_of_part_, f_variables_);
     images_.push_back(intersected(range_of(*f_of_part_), range));
     hull = hull_of(hull, images_.back());
   }

@@ -17,6 +17,28 @@ using formulas::BoxEnclosure;
 
 /// Of a set that tells nothing of a coordinate any more: its width beside that of the box.
 constexpr double lost_width = 4;
+
+/// Its hull, for boxes as tight as doubles allow: formulas may end where the set does.
+Box sides_of(const LineForm& set) {
+  if (set.lines() > 0 || set.constraints() > 0) return interval_hull(set);
+  Box sides{set.c, set.c};
+  for (Index i = 0; i < set.dim(); ++i) {
+    double radius = 0;
+    for (Index j = 0; j < set.generators(); ++j)
+      radius = directed::plus(radius, std::abs(set.G(i, j))).upper;
+    sides.lower[i] = directed::plus(set.c[i], -radius).lower;
+    sides.upper[i] = directed::plus(set.c[i], radius).upper;
+  }
+  return sides;
+}
+
+template <class Enclosure>
+bool lacks_rows(const Enclosure& of) {
+  for (Index row = 0; row < of.function().rows(); ++row)
+    if (!of.is_enclosed(row)) return true;
+  return false;
+}
+
 }  // namespace
 
 NonlinearRecursion::NonlinearRecursion(const Model& model,
@@ -51,6 +73,7 @@ bool NonlinearRecursion::has_bent_outputs() const {
 /// With nominal sets by as much wider as their proofs are: a state on its boundary is rounded.
 void NonlinearRecursion::take_admissible(const LineForm& set) {
   admissible_hull_ = interval_hull(set);
+  admissible_sides_ = sides_of(set);
   Vector room = Vector::Zero(set.dim());
   for (Index i = 0; i < set.dim() && backend_->info().rounding == Rounding::nominal; ++i) {
     for (double* const bound : {&admissible_hull_.lower[i], &admissible_hull_.upper[i]})
@@ -114,6 +137,30 @@ void NonlinearRecursion::set_variables(std::vector<Interval>& variables, const B
   variables[at] = {time, time};
 }
 
+bool NonlinearRecursion::cut_to_admissible(std::vector<Interval>& variables) const {
+  bool is_cut = false;
+  for (Index i = 0; model_->admissible && i < model_->states(); ++i) {
+    Interval& x = variables[as_size(i)];
+    const Interval cut = intersection(x, {admissible_sides_.lower[i], admissible_sides_.upper[i]});
+    if (cut.lower > cut.upper) continue;
+    is_cut = is_cut || cut.lower > x.lower || cut.upper < x.upper;
+    x = cut;
+  }
+  return is_cut;
+}
+
+void NonlinearRecursion::enclose(BoxEnclosure& function, std::vector<Interval>& variables) const {
+  function.set_box(variables);
+  if (lacks_rows(function) && cut_to_admissible(variables)) function.set_box(variables);
+}
+
+void NonlinearRecursion::evaluate(formulas::Evaluator& function,
+                                  std::vector<Interval>& variables) const {
+  function.evaluate(variables);
+  if (lacks_rows(function) && cut_to_admissible(variables)) function.evaluate(variables);
+  function.bound_rounding();
+}
+
 std::string NonlinearRecursion::row_name(Index row) const { return "x_" + std::to_string(row + 1); }
 
 Box NonlinearRecursion::range_of(const BoxEnclosure& enclosure) const {
@@ -130,7 +177,7 @@ Box NonlinearRecursion::range_of(const BoxEnclosure& enclosure) const {
 
 Box NonlinearRecursion::predicted_range(VectorIn u, Index k) {
   set_variables(f_variables_, B_, W_hull_, u, k);
-  f_.set_box(f_variables_);
+  enclose(f_, f_variables_);
   Box range = range_of(f_);
   if (options_.parts > 1) cut_into_parts(range, u, k);
   for (Index row = 0; row < range.dim(); ++row) {
@@ -263,7 +310,7 @@ bool NonlinearRecursion::keep_to_box() {
 bool NonlinearRecursion::correct_rows(const Sample& now, const std::vector<Index>& rows) {
   if (!B_.is_bounded()) return narrow_box();  // no affine form
   set_variables(g_variables_, B_, V_hull_, now.u, now.k);
-  g_.set_box(g_variables_);
+  enclose(g_, g_variables_);
   std::vector<Index> usable;
   std::ranges::copy_if(rows, std::back_inserter(usable),
                        [&](Index row) { return g_.is_enclosed(row); });

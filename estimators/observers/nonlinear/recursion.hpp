@@ -70,6 +70,12 @@ class NonlinearRecursion {
   /// The box of x, of w or v, u and k, as variables of f or g.
   void set_variables(std::vector<Interval>& variables, const Box& B, const Box& noise, VectorIn u,
                      Index k) const;
+  /// The enclosure of a function over the variables; where one of its rows has none, over those of
+  /// their states that the admissible set holds.
+  void enclose(formulas::BoxEnclosure& function, std::vector<Interval>& variables) const;
+  void evaluate(formulas::Evaluator& function, std::vector<Interval>& variables) const;
+  /// False: there is nothing to cut.
+  bool cut_to_admissible(std::vector<Interval>& variables) const;
   /// Of f over B × hull W, and room for rounding.
   Box predicted_range(VectorIn u, Index k);
   Box range_of(const formulas::BoxEnclosure& enclosure) const;
@@ -117,9 +123,10 @@ class NonlinearRecursion {
   bool contracts_ = false, needs_predicted_hull_ = false;
   Enclosure W_, V_, X_,
       admissible_;  ///< the last one: none, or unbounded and no set of the backend
-  Box W_hull_, V_hull_, admissible_hull_, B_;
-  mutable std::optional<Box> hull_;  ///< of X before it was reduced, where it was asked for
-  bool is_reduced_ = false;          ///< X has been replaced by a larger set
+  Box W_hull_, V_hull_, B_;
+  Box admissible_hull_, admissible_sides_;  ///< with room for the rounding of a state; without
+  mutable std::optional<Box> hull_;         ///< of X before it was reduced, where it was asked for
+  bool is_reduced_ = false;                 ///< X has been replaced by a larger set
   /// X_{k-1} where X_k is still to be made: relaxations predict and correct at once.
   struct Before {
     Enclosure X;

@@ -34,8 +34,7 @@ std::vector<AffineExpression> NonlinearRecursion::successors(RelaxedStep& step) 
   const Index n = model_->states();
   set_variables(f_variables_, before_->B, W_hull_, before_->u, before_->k);
   formulas::Evaluator& f = f_.evaluator();
-  f.evaluate(f_variables_);
-  f.bound_rounding();
+  evaluate(f, f_variables_);
   Relaxation& relaxation = step.relaxation();
   std::vector<AffineExpression> made =
       relaxation.add(f, all_rows(n),
@@ -71,8 +70,7 @@ bool NonlinearRecursion::correct_relaxed(const Sample& now) {
   }
   set_variables(g_variables_, B_, V_hull_, now.u, now.k);
   formulas::Evaluator& g = g_.evaluator();
-  g.evaluate(g_variables_);
-  g.bound_rounding();
+  evaluate(g, g_variables_);
   std::erase_if(rows, [&](Index row) { return !g.is_enclosed(row); });
   const std::vector<AffineExpression> outputs = relaxation.add(
       g, rows, inputs_of(relaxation, states, noise_at, model_->noises(), g_variables_));
