@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The commands: each adds its subcommand, whose callback leaves its exit code in `program.exit`.
+// What the commands share. A command is a function in the file of its name,
+//   CORDON_COMMAND(run) {
+// in namespace cordon::apps, that adds its subcommand to `app`; the subcommand's callback leaves
+// its exit code in `program.exit`. The build finds these lines (cmake/Collect.cmake), and main
+// calls the functions.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +11,8 @@
 
 #include "common.hpp"
 #include "cordon/study/study.hpp"
+
+#define CORDON_COMMAND(name) void add_##name(CLI::App& app, [[maybe_unused]] Program& program)
 
 namespace CLI {
 class App;
@@ -30,22 +36,5 @@ std::vector<const PipelineSpec*> pipelines_called(const Study& study, const std:
 
 /// `cordon list`.
 Exit list_components(const Program& program, bool json);
-
-void add_run(CLI::App& app, Program& program);
-void add_merge(CLI::App& app, Program& program);
-void add_report(CLI::App& app, Program& program);
-void add_validate(CLI::App& app, Program& program);
-void add_verify(CLI::App& app, Program& program);
-void add_compare(CLI::App& app, Program& program);
-void add_gain(CLI::App& app, Program& program);
-void add_guarantees(CLI::App& app, Program& program);
-void add_design(CLI::App& app, Program& program);
-void add_list(CLI::App& app, Program& program);
-void add_info(CLI::App& app, Program& program);
-void add_schema(CLI::App& app, Program& program);
-void add_new(CLI::App& app, Program& program);
-void add_doctor(CLI::App& app, Program& program);
-void add_conform(CLI::App& app, Program& program);
-void add_convert(CLI::App& app, Program& program);
 
 }  // namespace cordon::apps

@@ -34,7 +34,7 @@ Exit compare(const CompareArguments& arguments) {
 
 }  // namespace
 
-void add_compare(CLI::App& app, Program& program) {
+CORDON_COMMAND(compare) {
   CLI::App* command =
       app.add_subcommand("compare", "Compare finished runs or sweeps, also of different versions");
   const auto arguments = std::make_shared<CompareArguments>();

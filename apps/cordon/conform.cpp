@@ -254,7 +254,7 @@ Exit conform(const Program& program, const ConformArguments& arguments) {
 
 }  // namespace
 
-void add_conform(CLI::App& app, Program& program) {
+CORDON_COMMAND(conform) {
   CLI::App* command = app.add_subcommand(
       "conform", "Check a plugin's backends against the laws that every backend keeps");
   const auto arguments = std::make_shared<ConformArguments>();

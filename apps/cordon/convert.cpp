@@ -112,7 +112,7 @@ Exit convert(const Program& program, const ConvertRequest& wanted) {
 
 }  // namespace
 
-void add_convert(CLI::App& app, Program& program) {
+CORDON_COMMAND(convert) {
   CLI::App* command = app.add_subcommand(
       "convert", "Write studies, results and sets for MATLAB, and read them from there");
   command->footer(

@@ -59,7 +59,7 @@ Exit design(const Program& program, DesignArguments& arguments) {
 
 }  // namespace
 
-void add_design(CLI::App& app, Program& program) {
+CORDON_COMMAND(design) {
   CLI::App* command =
       app.add_subcommand("design", "Design inputs that tell the modes of a study apart");
   const auto arguments = std::make_shared<DesignArguments>();

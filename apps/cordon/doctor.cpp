@@ -123,7 +123,7 @@ Exit doctor(const Program& program, bool json) {
 
 }  // namespace
 
-void add_doctor(CLI::App& app, Program& program) {
+CORDON_COMMAND(doctor) {
   CLI::App* command = app.add_subcommand(
       "doctor", "Show versions, the search path, and what became of every plugin found");
   const auto json = std::make_shared<bool>(false);

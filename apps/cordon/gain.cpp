@@ -98,7 +98,7 @@ Exit gain(const Program& program, const GainArguments& arguments) {
 
 }  // namespace
 
-void add_gain(CLI::App& app, Program& program) {
+CORDON_COMMAND(gain) {
   CLI::App* command = app.add_subcommand(
       "gain", "Design and certify the gains of a study's observers; it needs no data");
   const auto arguments = std::make_shared<GainArguments>();

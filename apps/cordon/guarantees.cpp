@@ -97,7 +97,7 @@ Exit guarantees(const Program& program, const GuaranteesArguments& arguments) {
 
 }  // namespace
 
-void add_guarantees(CLI::App& app, Program& program) {
+CORDON_COMMAND(guarantees) {
   CLI::App* command = app.add_subcommand(
       "guarantees", "Say which faults of a study can be told apart, before any experiment");
   const auto arguments = std::make_shared<GuaranteesArguments>();

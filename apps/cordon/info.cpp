@@ -113,7 +113,7 @@ Exit info(const Program& program, const std::vector<std::string>& names, bool js
 
 }  // namespace
 
-void add_info(CLI::App& app, Program& program) {
+CORDON_COMMAND(info) {
   CLI::App* command = app.add_subcommand("info", "Explain components and their parameters");
   const auto names = std::make_shared<std::vector<std::string>>();
   const auto json = std::make_shared<bool>(false);

@@ -44,7 +44,7 @@ Exit list_components(const Program& program, bool json) {
   return Exit::done;
 }
 
-void add_list(CLI::App& app, Program& program) {
+CORDON_COMMAND(list) {
   CLI::App* command =
       app.add_subcommand("list", fmt::format("List components with their plugins, by kind: {}",
                                              fmt::join(Registry::kinds(), ", ")));

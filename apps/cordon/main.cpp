@@ -9,6 +9,14 @@
 #include "commands.hpp"
 #include "cordon/registry/build.hpp"
 
+namespace cordon::apps {
+
+#undef CORDON_COMMAND
+#define CORDON_COMMAND(name) void add_##name(CLI::App& app, Program& program);
+#include "generated/CORDON_COMMAND.inc"
+
+}  // namespace cordon::apps
+
 namespace {
 
 using namespace cordon::apps;
@@ -102,22 +110,9 @@ Exit run(int argc, char** argv) {
   app.add_flag("--trust-plugins", program.trust_plugins,
                "Load plugins from the directories that a study names: programs, which can do all "
                "that you can");
-  add_run(app, program);
-  add_merge(app, program);
-  add_report(app, program);
-  add_validate(app, program);
-  add_verify(app, program);
-  add_compare(app, program);
-  add_gain(app, program);
-  add_guarantees(app, program);
-  add_design(app, program);
-  add_list(app, program);
-  add_info(app, program);
-  add_schema(app, program);
-  add_convert(app, program);
-  add_new(app, program);
-  add_doctor(app, program);
-  add_conform(app, program);
+#undef CORDON_COMMAND
+#define CORDON_COMMAND(name) add_##name(app, program);
+#include "generated/CORDON_COMMAND.inc"
   add_help(app, program);
   try {
     app.parse(argc, argv);

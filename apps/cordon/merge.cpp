@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
-#include "sweep.hpp"
+#include "run_sweep.hpp"
 #include "sweep_report.hpp"
 
 namespace cordon::apps {
@@ -32,7 +32,7 @@ Exit merge(const MergeArguments& arguments) {
 
 }  // namespace
 
-void add_merge(CLI::App& app, Program& program) {
+CORDON_COMMAND(merge) {
   CLI::App* command =
       app.add_subcommand("merge", "Join the parts of a sweep that were run with --shard");
   const auto arguments = std::make_shared<MergeArguments>();

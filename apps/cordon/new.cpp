@@ -182,7 +182,7 @@ Exit new_plugin(const Program& program, const std::string& name, const fs::path&
 
 }  // namespace
 
-void add_new(CLI::App& app, Program& program) {
+CORDON_COMMAND(new) {
   CLI::App* command = app.add_subcommand("new", "Write the beginning of something of your own");
   command->require_subcommand(1);
   CLI::App* plugin = command->add_subcommand(

@@ -112,7 +112,9 @@ std::string units_text(const RunOutcome& outcome, const Labels& labels) {
     if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
   }
   for (const Measure& measure : outcome.measures) {
-    if (measure.mixes_states && measure.in_run != Measure::Shown::never)
+    const bool lengths = measure.quantity == Measure::Quantity::length ||
+                         measure.quantity == Measure::Quantity::squared_length;
+    if (lengths && measure.in_run != Measure::Shown::never)
       titles.push_back(measure.title.empty() ? measure.name : measure.title);
   }
   if (units.size() < 2 || titles.empty()) return "";

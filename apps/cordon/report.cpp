@@ -27,7 +27,7 @@ Exit report(const ReportArguments& arguments) {
 
 }  // namespace
 
-void add_report(CLI::App& app, Program& program) {
+CORDON_COMMAND(report) {
   CLI::App* command = app.add_subcommand("report", "Draw the figures of a finished run or sweep");
   const auto arguments = std::make_shared<ReportArguments>();
   command->add_option("DIR", arguments->directory, "Directory of the results")

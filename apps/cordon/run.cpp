@@ -14,7 +14,7 @@
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
 #include "run_report.hpp"
-#include "sweep.hpp"
+#include "run_sweep.hpp"
 
 namespace cordon::apps {
 
@@ -127,7 +127,7 @@ void add_sweep_options(CLI::App& command, const std::shared_ptr<RunArguments>& a
 
 }  // namespace
 
-void add_run(CLI::App& app, Program& program) {
+CORDON_COMMAND(run) {
   CLI::App* command = app.add_subcommand("run", "Run a study and compare its pipelines");
   const auto arguments = std::make_shared<RunArguments>();
   command->add_option("STUDY", arguments->study, "Study file (JSON)")->required()->option_text(" ");

@@ -18,7 +18,7 @@ Exit schema(const Program& program) {
 
 }  // namespace
 
-void add_schema(CLI::App& app, Program& program) {
+CORDON_COMMAND(schema) {
   CLI::App* command = app.add_subcommand(
       "schema", "Print the JSON Schema of study files, with the components found, for editors");
   command->callback([&program] { program.exit = schema(program); });

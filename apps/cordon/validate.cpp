@@ -309,7 +309,7 @@ Exit validate(const Program& program, const ValidateArguments& arguments) {
 
 }  // namespace
 
-void add_validate(CLI::App& app, Program& program) {
+CORDON_COMMAND(validate) {
   CLI::App* command = app.add_subcommand(
       "validate", "Check study files and their data, and show every error at once");
   const auto arguments = std::make_shared<ValidateArguments>();

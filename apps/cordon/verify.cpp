@@ -234,7 +234,7 @@ Exit verify(VerifyArguments& arguments) {
 
 }  // namespace
 
-void add_verify(CLI::App& app, Program& program) {
+CORDON_COMMAND(verify) {
   CLI::App* command =
       app.add_subcommand("verify", "Check the results of a run again, in exact arithmetic");
   const auto arguments = std::make_shared<VerifyArguments>();

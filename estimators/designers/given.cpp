@@ -79,7 +79,7 @@ std::vector<Diagnostic> check(const DesignerContext& context, const Params& para
 
 }  // namespace
 
-void register_given_designer(Registrar& registrar) {
+CORDON_COMPONENT(designer, given) {
   ParamSchema schema;
   schema.matrix("input", "the sequence, a row per time k = 0 … N").required();
   designers::add_statement_parameters(schema);

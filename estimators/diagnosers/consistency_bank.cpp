@@ -224,7 +224,7 @@ std::vector<Diagnostic> check_consistency_bank(const DiagnoserContext& context,
 
 }  // namespace
 
-void register_consistency_bank(Registrar& registrar) {
+CORDON_COMPONENT(diagnoser, consistency_bank) {
   ParamSchema schema;
   schema.component("observer", "observer of every mode, on the mode's own model", "observer")
       .required();

@@ -49,7 +49,7 @@ std::vector<Diagnostic> check_given_gain(const GainContext& context, const Param
 
 }  // namespace
 
-void register_given_gain(Registrar& registrar) {
+CORDON_COMPONENT(gain, given) {
   ParamSchema schema;
   schema.matrix("matrix", "L, a row per state and a column per output, with A - L C stable")
       .required();

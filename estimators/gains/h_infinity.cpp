@@ -47,7 +47,7 @@ class HInfinity final : public GainDesigner {
 
 }  // namespace
 
-void register_h_infinity_gain(Registrar& registrar) {
+CORDON_COMPONENT(gain, h_infinity) {
   ParamSchema schema;
   add_theta_parameter(schema);
   registrar.add(GainEntry{

@@ -49,7 +49,7 @@ class HInfinityMonotone final : public GainDesigner {
 
 }  // namespace
 
-void register_h_infinity_monotone_gain(Registrar& registrar) {
+CORDON_COMPONENT(gain, h_infinity_monotone) {
   ParamSchema schema;
   add_theta_parameter(schema);
   registrar.add(

@@ -57,7 +57,7 @@ class Kalman final : public GainDesigner {
 
 }  // namespace
 
-void register_kalman_gain(Registrar& registrar) {
+CORDON_COMPONENT(gain, kalman) {
   ParamSchema schema;
   schema.flag("steady",
               "the gain of the steady state at all times, in place of one that follows the set",

@@ -216,7 +216,7 @@ std::vector<Diagnostic> check_peak(const GainContext& context, const Params& par
 
 }  // namespace
 
-void register_peak_gain(Registrar& registrar) {
+CORDON_COMPONENT(gain, peak) {
   ParamSchema schema;
   add_theta_parameter(schema);
   registrar.add(GainEntry{

@@ -159,7 +159,7 @@ std::vector<Diagnostic> check_poles(const GainContext& context, const Params& pa
 
 }  // namespace
 
-void register_poles_gain(Registrar& registrar) {
+CORDON_COMPONENT(gain, poles) {
   ParamSchema schema;
   schema
       .vector("poles",

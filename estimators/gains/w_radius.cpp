@@ -117,7 +117,7 @@ class WRadiusGain final : public GainDesigner {
 
 }  // namespace
 
-void register_w_radius_gain(Registrar& registrar) {
+CORDON_COMPONENT(gain, w_radius) {
   ParamSchema schema;
   add_theta_parameter(schema);
   schema.real("rho",

@@ -143,16 +143,19 @@ class WeightedRadius final : public Metric {
 
   std::vector<Measure> do_measures() const override {
     const std::string name = Size::name, title = Size::title;
+    const auto quantity = weighted_.is_given() ? Measure::Quantity::number : Size::quantity;
     return {{.name = name + "_mean",
+             .of = name,
              .title = "mean " + title,
+             .quantity = quantity,
              .better = Preference::less,
-             .ranked = true,
-             .mixes_states = !weighted_.is_given()},
+             .ranked = true},
             {.name = name + "_max",
+             .of = name,
              .title = "max " + title,
+             .quantity = quantity,
              .better = Preference::less,
-             .in_comparison = Measure::Shown::never,
-             .mixes_states = !weighted_.is_given()}};
+             .in_comparison = Measure::Shown::never}};
   }
 
   Weighted weighted_;
@@ -163,11 +166,13 @@ class WeightedRadius final : public Metric {
 struct FWRadius {
   static constexpr const char* name = "f_w_radius";
   static constexpr const char* title = "F-W-radius";
+  static constexpr auto quantity = Measure::Quantity::length;
   static WRadius of(const Matrix& R, const Matrix& W) { return {f_w_radius(R, W), true}; }
 };
 struct SquaredRadius {
   static constexpr const char* name = "w_radius";
   static constexpr const char* title = "W-radius";
+  static constexpr auto quantity = Measure::Quantity::squared_length;
   static WRadius of(const Matrix& R, const Matrix& W) { return w_radius(R, W); }
 };
 
@@ -186,10 +191,13 @@ void add(Registrar& registrar, const char* summary) {
 
 }  // namespace
 
-void register_weighted_radius(Registrar& registrar) {
+CORDON_COMPONENT(metric, f_w_radius) {
   add<FWRadius>(registrar,
                 "√tr(Rᵀ W R) of the estimate's generators R; of the interval hull where there are "
                 "constraints");
+}
+
+CORDON_COMPONENT(metric, w_radius) {
   add<SquaredRadius>(registrar,
                      "largest (z - c)ᵀ W (z - c) over the estimate; an upper bound beyond 16 "
                      "generators or with constraints");

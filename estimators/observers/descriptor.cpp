@@ -92,7 +92,7 @@ std::vector<Diagnostic> check_descriptor(const ObserverContext& context, const P
 
 }  // namespace
 
-void register_descriptor(Registrar& registrar) {
+CORDON_COMPONENT(observer, descriptor) {
   ParamSchema schema = common_parameters();
   schema.set("admissible_set",
              "set that holds the state at all times; needed by bounded representations with exact "

@@ -66,7 +66,7 @@ constexpr const char* integrated_details =
 
 }  // namespace
 
-void register_integrated(Registrar& registrar) {
+CORDON_COMPONENT(observer, integrated) {
   ParamSchema schema;
   add_gain_parameter(schema, "gain",
                      "gain with A - L C ≥ 0 in every entry; absent: \"h_infinity_monotone\"");

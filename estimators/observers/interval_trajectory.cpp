@@ -59,7 +59,7 @@ constexpr const char* interval_trajectory_details =
 
 }  // namespace
 
-void register_interval_trajectory(Registrar& registrar) {
+CORDON_COMPONENT(observer, interval_trajectory) {
   ParamSchema schema;
   add_gain_parameter(schema, "gain",
                      "gain of both bounds; absent, and the others too: the steady gain \"kalman\"");

@@ -73,7 +73,7 @@ std::vector<Diagnostic> check_luenberger(const ObserverContext& context, const P
 
 }  // namespace
 
-void register_luenberger(Registrar& registrar) {
+CORDON_COMPONENT(observer, luenberger) {
   ParamSchema schema = common_parameters();
   add_admissible_set(schema);
   add_widening_limit(schema);

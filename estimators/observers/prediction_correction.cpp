@@ -104,7 +104,7 @@ std::vector<Diagnostic> check_prediction_correction(const ObserverContext& conte
 
 }  // namespace
 
-void register_prediction_correction(Registrar& registrar) {
+CORDON_COMPONENT(observer, prediction_correction) {
   ParamSchema schema = common_parameters();
   add_admissible_set(schema);
   registrar.add(ObserverEntry{

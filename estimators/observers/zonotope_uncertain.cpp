@@ -107,7 +107,7 @@ constexpr const char* zonotope_uncertain_details =
 
 }  // namespace
 
-void register_zonotope_uncertain(Registrar& registrar) {
+CORDON_COMPONENT(observer, zonotope_uncertain) {
   ParamSchema schema = common_parameters();
   add_admissible_set(schema);
   add_widening_limit(schema);

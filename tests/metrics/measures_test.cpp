@@ -18,13 +18,18 @@ struct Scene {
   /// After one step for each answer, in this order, about the truth.
   std::shared_ptr<Metric> fed(const std::string& name, const std::vector<Vector>& truths) {
     auto metric = registry.make<MetricEntry>(name, {});
+    for (const Vector& truth : truths) step(*metric, &truth);
+    return metric;
+  }
+
+  /// The values of a step.
+  std::vector<MetricValue> step(Metric& metric, const Vector* truth = nullptr) {
     Estimate estimate;
     estimate.set = registry.make<BackendEntry>("zonotope", {})
                        ->import(make_zonotope(Vector{{0}}, Matrix{{1}}));
     const Box hull = estimate.set->interval_hull();
     const PhaseTimes times;
-    for (const Vector& truth : truths) metric->step({estimate, hull, &truth, true, times});
-    return metric;
+    return metric.step({estimate, hull, truth, true, times});
   }
 
   Registry registry;
@@ -46,10 +51,11 @@ TEST_CASE("every number of a summary is described, and nothing else") {
     CAPTURE(name);
     const auto metric = scene.fed(name, {Vector{{0}}});
     const std::vector<Measure> measures = metric->measures();
-    const std::vector<MetricValue> summary = metric->summary();
+    const std::vector<MetricValue> summary = metric->summary(), step = scene.step(*metric);
     CHECK(measures.size() == summary.size());
     for (const Measure& measure : measures) {
       value_of(summary, measure.name);
+      if (!measure.of.empty()) value_of(step, measure.of);
       // a share of proven answers is shown beside what was answered otherwise, or not at all
       if (measure.name == "contains_truth_no" || measure.name == "contains_truth_unknown")
         CHECK(measure.in_comparison == Measure::Shown::if_any);

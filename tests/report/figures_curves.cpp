@@ -269,22 +269,27 @@ TEST_CASE("metrics: columns with numbers, logarithmic over powers of ten, and th
   CHECK_FALSE(plot(with_zero, "metric_2").log_y);
 }
 
-TEST_CASE("metrics: units, where all states share one and are not weighed") {
-  const auto labels = [](const std::string& names, const std::string& metrics = "") {
+TEST_CASE("metrics: their units, or those of the states where these share one") {
+  const auto labels = [](const std::string& names, const std::string& measures) {
     const ResultsFiles files;
     files.replace("results.json", R"("system": {"modes": []})",
-                  R"("system": {"modes": [], "names": {"states": [)" + names +
-                      R"(]}}, "metrics": [)" + metrics + "]");
+                  R"("system": {"modes": [], "names": {"states": [)" + names + "]}}");
+    files.replace("results.json", R"("study":)", R"("measures": [)" + measures + R"(], "study":)");
     const Report report = read_report(files.path());
     return std::pair(plot(report, "metric_1").y_label, plot(report, "metric_2").y_label);
   };
   using Labels = std::pair<std::string, std::string>;
-  CHECK(labels(R"("a [m]", "b [m]")") == Labels{"radius [m]", "volume [m²]"});
-  CHECK(labels(R"("a [m/s]", "b [m/s]")") == Labels{"radius [m/s]", "volume [(m/s)²]"});
-  CHECK(labels(R"("a [m]", "b [s]")") == Labels{"radius", "volume"});
-  CHECK(labels(R"("a", "b")") == Labels{"radius", "volume"});
-  CHECK(labels(R"("a [m]", "b [m]")", R"({"type": "radius", "scales": [1, 2]})") ==
-        Labels{"radius", "volume [m²]"});
+  const std::string volume = R"({"name": "mean", "of": "volume", "quantity": "volume"})",
+                    both = R"({"name": "max", "of": "radius", "quantity": "length"}, )" + volume,
+                    squared = R"({"name": "max", "of": "radius", "quantity": "squared_length"})",
+                    own = R"({"name": "max", "of": "radius", "unit": "µs"})";
+  CHECK(labels(R"("a [m]", "b [m]")", both) == Labels{"radius [m]", "volume [m²]"});
+  CHECK(labels(R"("a [m/s]", "b [m/s]")", both) == Labels{"radius [m/s]", "volume [(m/s)²]"});
+  CHECK(labels(R"("a [m]", "b [s]")", both) == Labels{"radius", "volume"});
+  CHECK(labels(R"("a", "b")", both) == Labels{"radius", "volume"});
+  CHECK(labels(R"("a [m]", "b [m]")", volume) == Labels{"radius", "volume [m²]"});
+  CHECK(labels(R"("a [m]", "b [m]")", squared) == Labels{"radius [m²]", "volume"});
+  CHECK(labels(R"("a [m]", "b [s]")", own) == Labels{"radius [µs]", "volume"});
   const ResultsFiles files;
   CHECK(plot(read_report(files.path()), "step_time").y_label == "time per step [µs]");
 }

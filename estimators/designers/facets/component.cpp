@@ -21,7 +21,7 @@ class Facets final : public designers::TubeDesigner {
 
 }  // namespace
 
-void register_facets_designer(Registrar& registrar) {
+CORDON_COMPONENT(designer, facets) {
   ParamSchema schema;
   designers::add_search_parameters(schema);
   designers::add_statement_parameters(schema);

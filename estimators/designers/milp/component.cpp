@@ -24,7 +24,7 @@ class Milp final : public designers::TubeDesigner {
 
 }  // namespace
 
-void register_milp_designer(Registrar& registrar) {
+CORDON_COMPONENT(designer, milp) {
   ParamSchema schema;
   designers::add_search_parameters(schema);
   designers::add_statement_parameters(schema);

@@ -343,7 +343,7 @@ constexpr const char* filter_details =
 
 }  // namespace
 
-void register_fault_estimation_filter(Registrar& registrar) {
+CORDON_COMPONENT(diagnoser, fault_estimation_filter) {
   registrar.add(DiagnoserEntry{
       {"fault_estimation_filter",
        "bounds of additive faults in systems with and without E, a few steps later", "Wang2017",

@@ -230,7 +230,7 @@ std::vector<Diagnostic> check_observer_bank(const DiagnoserContext& context, con
 
 }  // namespace
 
-void register_observer_bank(Registrar& registrar) {
+CORDON_COMPONENT(diagnoser, observer_bank) {
   registrar.add(DiagnoserEntry{
       {"observer_bank",
        "a bank of Luenberger observers on sets, with conditions checked in advance",

@@ -108,7 +108,7 @@ std::vector<Diagnostic> check_tube_membership(const DiagnoserContext& context,
 
 }  // namespace
 
-void register_tube_membership(Registrar& registrar) {
+CORDON_COMPONENT(diagnoser, tube_membership) {
   ParamSchema schema;
   schema.integer("horizon", "N: the samples of k = 0 … N decide; the work for each grows with k",
                  20, 0, designers::most_horizon);

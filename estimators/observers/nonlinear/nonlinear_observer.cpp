@@ -154,7 +154,7 @@ std::vector<Diagnostic> check_nonlinear(const ObserverContext& context, const Pa
 
 }  // namespace
 
-void register_nonlinear(Registrar& registrar) {
+CORDON_COMPONENT(observer, nonlinear) {
   ParamSchema schema = common_parameters();
   schema.choice(
       "method",

@@ -105,7 +105,7 @@ std::vector<Diagnostic> check_strips(const ObserverContext& context, const Param
 
 }  // namespace
 
-void register_nonlinear_strips(Registrar& registrar) {
+CORDON_COMPONENT(observer, nonlinear_strips) {
   ParamSchema schema = common_parameters();
   schema.choice("variant",
                 "strips of least F-radius row by row (frad_a) or with one gain (frad_b), a gain on "

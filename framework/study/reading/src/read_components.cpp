@@ -15,7 +15,9 @@ using Kind = Value::Kind;
 constexpr std::size_t max_text = 65536;
 constexpr int max_nesting = 8;  // of components
 
-const char* article(std::string_view kind) { return kind == "observer" ? "an " : "a "; }
+const char* article(std::string_view kind) {
+  return std::string_view("aeiou").find(kind.front()) != std::string_view::npos ? "an " : "a ";
+}
 
 /// A list of rows, or the sparse form.
 bool is_matrix(const Value& value) { return value.kind == Kind::array || is_sparse_matrix(value); }

@@ -98,19 +98,26 @@ MetricValues MetricBoard::summary() const {
 
 std::vector<Measure> MetricBoard::measures() const {
   std::vector<Measure> found;
-  MetricNames names;
+  MetricNames names, step_names;
   for (const Entry& entry : entries_) {
     const std::vector<Measure> told = entry.metric->measures();
-    std::map<std::string, std::string> name_in_files;
+    std::map<std::string, std::string> name_in_files, step_name_in_files;
     for (const MetricValue& value : entry.metric->summary()) {
       std::vector<MetricValue> named;
       names.add(named, value, entry.type);
       if (!named.empty()) name_in_files[value.name] = named.front().name;
     }
+    for (const Measure& measure : told) {
+      if (measure.of.empty() || step_name_in_files.contains(measure.of)) continue;
+      std::vector<MetricValue> named;
+      step_names.add(named, {measure.of, 0.}, entry.type);
+      step_name_in_files[measure.of] = named.empty() ? "" : named.front().name;
+    }
     for (Measure measure : told) {
       const auto name = name_in_files.find(measure.name);
       if (name == name_in_files.end()) continue;
       measure.name = name->second;
+      if (!measure.of.empty()) measure.of = step_name_in_files[measure.of];
       for (std::string& part : measure.rest) {
         if (const auto other = name_in_files.find(part); other != name_in_files.end())
           part = other->second;

@@ -6,6 +6,7 @@
 
 #include "experiments/report/ticks.hpp"
 #include "figures/figures.hpp"
+#include "study/results/measures.hpp"
 
 namespace cordon::report {
 
@@ -47,17 +48,6 @@ std::string common_unit(const Labels::Names& states) {
   return same ? unit : "";
 }
 
-/// Does the study weigh the states in this metric, so that it has no unit of theirs?
-bool weighs_states(const RunFiles& files) {
-  const auto study = object_of(files.root(), "study");
-  if (!study) return false;
-  for (const json::Cursor& metric : items_of(*study, "metrics")) {
-    if (!metric.is(json::Value::Kind::object)) continue;
-    if (metric.find("scales") || metric.find("weight")) return true;
-  }
-  return false;
-}
-
 /// "m³", "(m/s)²".
 std::string power_of(const std::string& unit, std::size_t exponent) {
   if (exponent == 1) return unit;
@@ -67,14 +57,20 @@ std::string power_of(const std::string& unit, std::size_t exponent) {
   return (simple ? unit : "(" + unit + ")") + superscript(static_cast<int>(exponent));
 }
 
-/// The metric's name with its unit, where that is known.
+/// The metric's name with its unit: what the metric tells of numbers that sum the column up.
 std::string labelled(const RunFiles& files, const Curves& curves, const std::string& column) {
-  if (column == "step_time_us") return column + " [µs]";
+  using Quantity = Measure::Quantity;
+  const std::vector<Measure> measures = detail::read_measures(files.root());
+  const auto measure = std::find_if(measures.begin(), measures.end(),
+                                    [&](const Measure& m) { return m.of == column; });
+  if (measure == measures.end()) return column;
+  if (!measure->unit.empty()) return column + " [" + measure->unit + "]";
   const std::string unit = common_unit(files.labels().states);
-  if (unit.empty()) return column;
-  if (column == "volume") return column + " [" + power_of(unit, curves.all_states) + "]";
-  const bool length = column == "radius" || column == "w_radius" || column == "f_w_radius";
-  return length && !weighs_states(files) ? column + " [" + unit + "]" : column;
+  if (unit.empty() || measure->quantity == Quantity::number) return column;
+  const std::size_t power = measure->quantity == Quantity::length           ? 1
+                            : measure->quantity == Quantity::squared_length ? 2
+                                                                            : curves.all_states;
+  return column + " [" + power_of(unit, power) + "]";
 }
 
 void add(Report& report, std::string id, std::string title, std::string caption, Plot plot) {

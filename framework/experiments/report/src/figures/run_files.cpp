@@ -109,7 +109,7 @@ RunFiles::RunFiles(std::filesystem::path directory, Detail detail)
   LargeJson results =
       read_large(files_.file("results.json"),
                  {.kept = {"/cordon_results", "/title", "/cordon", "/tools", "/plugins",
-                           "/study_hash", "/study/system", "/study/metrics", "/sets", "/pipelines"},
+                           "/study_hash", "/study/system", "/measures", "/sets", "/pipelines"},
                   .streamed = {"/pipelines/*/steps/*", "/points/*"},
                   .copied = "/study"},
                  problems_);

@@ -25,19 +25,22 @@ enum class Preference { none, less, more };
 /// What tables, statistics and reports know of a value beside its name.
 struct Measure {
   enum class Shown { always, if_any, never };  ///< `if_any`: where one of the numbers is not 0
+  /// Lengths take the states as they are, in the unit that these share; what they mean is little
+  /// where the units differ. A volume is a product of one length per state.
+  enum class Quantity { number, length, squared_length, volume };
 
   std::string name;              ///< as in the summary of the metric
+  std::string of = {};           ///< the value of a step that it sums up: its curve has this unit
   std::string title = {};        ///< of its column, "mean radius"; empty: the name
   std::string short_title = {};  ///< where there is less room, "gen"; empty: the title
-  std::string unit = {};         ///< "µs"; empty: that of the states, or none
+  std::string unit = {};         ///< "µs"; empty: that of its quantity
+  Quantity quantity = Quantity::number;
   Preference better = Preference::none;
   bool ranked = false;                  ///< its ratio to the best one stands beside it
   bool share = false;                   ///< of 1, shown in percent
   std::vector<std::string> rest = {};   ///< values that make a count up to the whole: "71/101"
   Shown in_run = Shown::always;         ///< in the table of a run
   Shown in_comparison = Shown::always;  ///< in tables that compare the pipelines of a run or sweep
-  bool mixes_states = false;  ///< compares or adds up lengths of different states as they are,
-                              ///< which means little where their units differ
 
   friend bool operator==(const Measure&, const Measure&) = default;
 };

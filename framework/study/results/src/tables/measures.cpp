@@ -19,6 +19,7 @@ using json::Value;
 constexpr std::size_t longest_text = 4096;
 const std::array<const char*, 3> preferences{"none", "less", "more"};
 const std::array<const char*, 3> shown_words{"always", "if_any", "never"};
+const std::array<const char*, 4> quantities{"number", "length", "squared_length", "volume"};
 
 /// Of every additive fault: fault_I_half_width, fault_I_rms_error.
 const Measure half_width{.name = "", .better = Preference::less, .ranked = true},
@@ -93,9 +94,9 @@ const Measure* find(std::span<const Measure> measures, std::string_view name) {
   return found == measures.end() ? nullptr : &*found;
 }
 
-template <class Enum>
+template <class Enum, std::size_t count>
 void write_choice(JsonWriter& json, const char* key, Enum value, Enum standard,
-                  const std::array<const char*, 3>& words) {
+                  const std::array<const char*, count>& words) {
   if (value != standard) json.member(key, words[static_cast<std::size_t>(value)]);
 }
 
@@ -104,8 +105,8 @@ std::string read_word(const Cursor& at, const char* key) {
   return text ? json::read_line(*text, longest_text).value_or("") : "";
 }
 
-template <class Enum>
-void read_enum(const Cursor& at, const char* key, const std::array<const char*, 3>& words,
+template <class Enum, std::size_t count>
+void read_enum(const Cursor& at, const char* key, const std::array<const char*, count>& words,
                Enum& value) {
   const auto text = at.find(key);
   const auto word = text ? json::read_choice(*text, {words.begin(), words.end()}) : std::nullopt;
@@ -123,9 +124,11 @@ Measure read_measure(const Cursor& at) {
   Measure measure;
   if (const auto name = at.need("name", not_as_written))
     measure.name = json::read_line(*name, longest_text).value_or("");
+  measure.of = read_word(at, "of");
   measure.title = read_word(at, "title");
   measure.short_title = read_word(at, "short_title");
   measure.unit = read_word(at, "unit");
+  read_enum(at, "quantity", quantities, measure.quantity);
   read_enum(at, "better", preferences, measure.better);
   measure.ranked = read_bool(at, "ranked");
   measure.share = read_bool(at, "share");
@@ -144,9 +147,11 @@ void write_measures(JsonWriter& json, const std::vector<Measure>& measures) {
   json.key("measures").begin_array(JsonWriter::Layout::lines);
   for (const Measure& m : measures) {
     json.begin_object().member("name", m.name);
+    if (!m.of.empty()) json.member("of", m.of);
     if (!m.title.empty()) json.member("title", m.title);
     if (!m.short_title.empty()) json.member("short_title", m.short_title);
     if (!m.unit.empty()) json.member("unit", m.unit);
+    write_choice(json, "quantity", m.quantity, Measure::Quantity::number, quantities);
     write_choice(json, "better", m.better, Preference::none, preferences);
     if (m.ranked) json.member("ranked", true);
     if (m.share) json.member("share", true);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cordon/registry/plugin.hpp"
-
 #include <limits>
 #include <memory>
 #include <utility>
 
+#include "cordon/registry/plugin.hpp"
 #include "coupled_tanks.hpp"
 #include "stirred_tank.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sweep.hpp"
+#include "run_sweep.hpp"
 
 #include <charconv>
 #include <thread>
