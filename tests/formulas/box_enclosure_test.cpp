@@ -274,3 +274,45 @@ TEST_CASE("random formulas: points of the box keep to range and affine form") {
   }
   CHECK(enclosed > 1000);
 }
+
+TEST_CASE("formulas with poles that are assumed to be left out: both sides keep to the forms") {
+  int enclosed = 0;
+  for (const std::string& formula : formulas_with_poles) {
+    auto graph = std::make_shared<Graph>(variable_names(1));
+    const int row = node_of(formula, *graph);
+    const auto function = std::make_shared<const Function>(graph, std::vector<int>{row}, 1, 2);
+    for (const std::vector<Interval>& box : boxes_with_poles) {
+      for (const AffineForm form :
+           {AffineForm::mean_value, AffineForm::first_order, AffineForm::convex_differences}) {
+        BoxEnclosure enclosure(function, 1, form, Rounding::nominal, Undefined::assumed);
+        enclosure.set_box(box);
+        if (!enclosure.is_enclosed(0)) continue;
+        ++enclosed;
+        Eigen::RowVectorXd slope(1);
+        const BoxEnclosure::Affine affine = enclosure.affine(0, slope);
+        CAPTURE(formula);
+        CAPTURE(box[0].lower);
+        for (const double x : points_between(box[0], 200)) {
+          const Digits value = value_of(*graph, row, digits({x}), 0.5);
+          if (!isfinite(value)) continue;
+          CHECK(holds(enclosure.range(0), value));
+          const Digits linear =
+              affine.value + Digits(slope[0]) * (Digits(x) - Digits(enclosure.center()[0]));
+          CHECK(abs(value - linear) <= Digits(affine.radius));
+        }
+      }
+    }
+  }
+  CHECK(enclosed > 50);
+}
+
+TEST_CASE("the centre of the smallest numbers is one of them") {
+  const auto function = compiled({"x"}, {"sqrt(x)"}, 1);
+  for (const AffineForm form : {AffineForm::mean_value, AffineForm::first_order}) {
+    BoxEnclosure enclosure(function, 1, form, Rounding::nominal);
+    constexpr double smallest = 5e-324;
+    enclosure.set_box(std::vector<Interval>{{smallest, smallest}});
+    CHECK(enclosure.center()[0] == smallest);
+    CHECK(holds(enclosure.range(0), sqrt(Digits(smallest))));
+  }
+}

@@ -11,6 +11,7 @@
 #include <boost/multiprecision/mpfr.hpp>
 
 #include "cordon/formulas/evaluator.hpp"
+#include "cordon/formulas/parse.hpp"
 
 namespace cordon::test {
 
@@ -226,6 +227,32 @@ inline std::vector<std::string> variable_names(int count) {
   std::vector<std::string> names;
   for (int i = 1; i <= count; ++i) names.push_back("x" + std::to_string(i));
   return names;
+}
+
+/// The node of a formula in the graph's variables.
+inline int node_of(const std::string& formula, formulas::Graph& graph) {
+  formulas::Vocabulary vocabulary;
+  for (Index i = 0; i < graph.variables(); ++i)
+    vocabulary.known.emplace(graph.name(static_cast<int>(i)), graph.variable(i));
+  std::vector<formulas::FormulaError> errors;
+  return formulas::parse(formula, graph, vocabulary, errors).value().node();
+}
+
+/// Bounded where they are defined, though a part of them is not.
+inline const std::vector<std::string> formulas_with_poles = {
+    "asin((8 - x1^-2)^-2)", "sin(x1^-2)",    "atan(x1^-2)",
+    "exp(-x1^-2)",          "sin(1/x1)",     "atan(1/x1)",
+    "x1*atan(x1^-3)",       "atan(tan(x1))", "cos(tan(2*x1))",
+    "atan(x1^-0.5)*x1"};
+inline const std::vector<std::vector<Interval>> boxes_with_poles = {
+    {{-2.621841209400408, 3.7517703636521409}}, {{-1, 1}}, {{-0.25, 2}}, {{0, 3}}, {{-3, 0}}};
+
+/// The middles of so many parts.
+inline std::vector<double> points_between(Interval side, int count) {
+  std::vector<double> points;
+  for (int i = 0; i < count; ++i)
+    points.push_back(side.lower + (side.upper - side.lower) * (i + 0.5) / count);
+  return points;
 }
 
 }  // namespace cordon::test

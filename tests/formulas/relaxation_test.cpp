@@ -14,12 +14,12 @@ namespace {
 /// A relaxation of formulas over a box of their variables, with points of their graph.
 struct Relaxed {
   Relaxed(std::shared_ptr<const Graph> of, std::vector<int> parts, std::vector<Interval> box,
-          Rounding rounding = Rounding::nominal)
+          Rounding rounding = Rounding::nominal, Undefined undefined = Undefined::refused)
       : graph(std::move(of)),
         nodes(std::move(parts)),
         function(std::make_shared<const Function>(graph, nodes,
                                                   static_cast<Index>(graph->variables()), 1)),
-        evaluator(function, rounding),
+        evaluator(function, rounding, undefined),
         relaxation(box) {
     evaluator.evaluate(box);
     std::vector<AffineExpression> inputs;
@@ -177,7 +177,8 @@ TEST_CASE("random formulas: points of their graphs keep to all rows") {
       box.push_back({lower, lower + std::exp(uniform(random, -20, 0.5))});
     }
     const Relaxed relaxed(graph, {first, second}, box,
-                          i % 20 ? Rounding::nominal : Rounding::outward);
+                          i % 20 ? Rounding::nominal : Rounding::outward,
+                          i % 3 ? Undefined::refused : Undefined::assumed);
     if (!relaxed.is_enclosed) continue;
     ++enclosed;
     rows += relaxed.relaxation.inequalities().size();
@@ -188,4 +189,27 @@ TEST_CASE("random formulas: points of their graphs keep to all rows") {
   }
   CHECK(enclosed > 1000);
   CHECK(rows > 6'000);
+}
+
+TEST_CASE("formulas with poles that are assumed to be left out: both sides keep to all rows") {
+  for (const std::string& formula : formulas_with_poles) {
+    auto graph = std::make_shared<Graph>(variable_names(1));
+    const int row = node_of(formula, *graph);
+    for (const std::vector<Interval>& box : boxes_with_poles) {
+      const Relaxed relaxed(graph, {row}, box, Rounding::nominal, Undefined::assumed);
+      if (!relaxed.is_enclosed) continue;
+      CAPTURE(formula);
+      CAPTURE(box[0].lower);
+      for (const double x : points_between(box[0], 200)) CHECK(broken(relaxed, {x}, 0.5) == "");
+    }
+  }
+}
+
+TEST_CASE("nothing times what overflows is nothing, and no coefficient is infinite") {
+  auto graph = std::make_shared<Graph>(variable_names(2));
+  const int row = node_of("x1*(1 + x2)^2", *graph);
+  const Relaxed relaxed(graph, {row}, {{0, 0}, {1e154, 1e300}});
+  REQUIRE(relaxed.is_enclosed);
+  for (const double c : relaxed.values[0].coefficients) CHECK(std::isfinite(c));
+  CHECK(relaxed.relaxation.range(relaxed.values[0]).is_finite());
 }

@@ -14,7 +14,9 @@ namespace cordon::estimators {
 
 namespace {
 
-double middle_of(Interval x) { return 0.5 * x.lower + 0.5 * x.upper; }
+double middle_of(Interval x) {
+  return std::clamp(0.5 * x.lower + 0.5 * x.upper, x.lower, x.upper);  // halves may underflow
+}
 double radius_of(Interval x) { return 0.5 * x.upper - 0.5 * x.lower; }
 
 Matrix beside(const Matrix& left, const Matrix& right) {

@@ -52,6 +52,13 @@ Interval slope_of_absolute_value(Interval a) {
   return a.upper < 0 ? -one : Interval{-1, 1};
 }
 
+/// On its two sides the operation has the same derivatives as elsewhere, which say nothing of how a
+/// value on one side differs from one on the other.
+bool has_pole(const Node& node, Interval a) {
+  if (node.operation == Operation::power) return node.number < 0 && a.contains(0);
+  return node.operation == Operation::tangent && el::tan_domain(a) != Domain::all;
+}
+
 }  // namespace
 
 Domain domain_of(const Node& node, Interval a) {
@@ -134,6 +141,7 @@ Interval range_of(const Node& node, Interval a, Interval b, Rounding rounding) {
 }
 
 Interval first_derivative(const Node& node, Interval a, Interval value, Rounding rounding) {
+  if (has_pole(node, a)) return real_line;
   switch (node.operation) {
     case Operation::negate:
       return -one;
@@ -167,6 +175,7 @@ Interval first_derivative(const Node& node, Interval a, Interval value, Rounding
 }
 
 Interval second_derivative(const Node& node, Interval a, Interval value, Rounding rounding) {
+  if (has_pole(node, a)) return real_line;
   switch (node.operation) {
     case Operation::negate:
       return {0, 0};

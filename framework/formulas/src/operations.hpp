@@ -2,6 +2,8 @@
 // One operation over intervals: domain, range, and the ranges of its derivatives by its operand.
 #pragma once
 
+#include <algorithm>
+
 #include "cordon/formulas/elementary.hpp"
 #include "cordon/formulas/expression.hpp"
 
@@ -10,7 +12,9 @@ namespace cordon::formulas {
 inline constexpr Interval one{1, 1};
 inline Interval point(double x) { return {x, x}; }
 /// Rounded; within the interval.
-inline double middle(Interval x) { return 0.5 * x.lower + 0.5 * x.upper; }
+inline double middle(Interval x) {
+  return std::clamp(0.5 * x.lower + 0.5 * x.upper, x.lower, x.upper);  // halves may underflow
+}
 
 /// Where the first operand `a` stands to the domain of the operation.
 elementary::Domain domain_of(const Node& node, Interval a);
@@ -24,7 +28,8 @@ Interval within_domain(const Node& node, Interval a);
 Interval range_of(const Node& node, Interval a, Interval b, Rounding rounding);
 
 /// The ranges of φ' and φ'' of an operation with one operand; `value`: its range. Not bounded where
-/// the derivative is not, the real line where there is none.
+/// the derivative is not, the real line where there is none or φ has a pole in `a`: what they are
+/// used for, that φ rises, is convex, or differs by so much at most, is then wrong.
 Interval first_derivative(const Node& node, Interval a, Interval value, Rounding rounding);
 Interval second_derivative(const Node& node, Interval a, Interval value, Rounding rounding);
 

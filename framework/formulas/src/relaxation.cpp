@@ -24,6 +24,10 @@ double coefficient(const AffineExpression& x, std::size_t i) {
   return i < x.coefficients.size() ? x.coefficients[i] : 0.0;
 }
 
+bool has_finite_coefficients(const AffineExpression& x) {
+  return std::ranges::all_of(x.coefficients, [](double c) { return std::isfinite(c); });
+}
+
 /// ψ = φ or -φ of an operation with one operand, over an interval of it.
 class Curve {
  public:
@@ -141,9 +145,7 @@ AffineExpression Relaxation::lifted(Interval range, int node) {
 
 void Relaxation::require(const AffineExpression& expression) {
   if (!std::isfinite(expression.offset.lower) || expression.is_constant()) return;
-  const bool is_finite =
-      std::ranges::all_of(expression.coefficients, [](double c) { return std::isfinite(c); });
-  if (is_finite && range(expression).upper > 0)
+  if (has_finite_coefficients(expression) && range(expression).upper > 0)
     inequalities_.push_back({expression.coefficients, -expression.offset.lower});
 }
 
@@ -160,7 +162,8 @@ class Relaxation::Walk {
     std::optional<AffineExpression>& made = made_[static_cast<std::size_t>(place)];
     if (made) return *made;
     AffineExpression found = make(place);
-    made = found.offset.is_finite() ? std::move(found) : constant(evaluator_.part(place));
+    const bool is_usable = found.offset.is_finite() && has_finite_coefficients(found);
+    made = is_usable ? std::move(found) : constant(evaluator_.part(place));
     return *made;
   }
 
