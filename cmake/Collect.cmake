@@ -3,8 +3,8 @@
 #   list stands in that file alone. Sets MACRO in the caller to the list of their arguments, in the
 #   order of the files, and writes `MACRO(arguments)` for each into <current build
 #   folder>/generated/MACRO.inc, to be included where MACRO means what is to be done with one.
-#   Configured anew when one of the files that have such lines changes, or a file comes or goes
-#   (where they are from a glob with CONFIGURE_DEPENDS).
+#   Configured anew when one of the files changes, or comes or goes (where they are from a glob with
+#   CONFIGURE_DEPENDS).
 function(cordon_collect macro)
   cmake_parse_arguments(arg "" "" "FILES" ${ARGN})
   set(found "")
@@ -16,10 +16,8 @@ function(cordon_collect macro)
       list(APPEND found "${arguments}")
       string(APPEND text "${macro}(${arguments})\n")
     endforeach()
-    if(lines)
-      set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
-    endif()
   endforeach()
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${arg_FILES})
   if(NOT found)
     message(FATAL_ERROR "cordon_collect: no file has a line ${macro}(…) {")
   endif()
