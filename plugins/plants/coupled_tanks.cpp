@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cordon/core/error.hpp"
+#include "formula_parts.hpp"
 
 namespace cordon::plants {
 
@@ -28,21 +29,44 @@ CoupledTanks::CoupledTanks(const CoupledTanksParameters& parameters) : of_(param
                                  std::to_string(of_.height) + " cm: give a lower voltage");
 }
 
+template <class Number>
+CoupledTanks::Levels<Number> CoupledTanks::inside(const Number& upper, const Number& lower) const {
+  using std::max, std::min;
+  return {min(max(upper, 0.0), of_.height), min(max(lower, 0.0), of_.height)};
+}
+
+template <class Number>
+CoupledTanks::Levels<Number> CoupledTanks::after_step(const Levels<Number>& at,
+                                                      const Number& voltage) const {
+  using std::sqrt;
+  const double step = of_.sampling / static_cast<double>(of_.substeps);
+  const Number drained = of_.upper_outlet * sqrt(2 * of_.gravity * at.upper);
+  const Number left = of_.lower_outlet * sqrt(2 * of_.gravity * at.lower);
+  return inside<Number>(
+      at.upper + step * (of_.upper_inflow * voltage - drained),
+      at.lower + step * (of_.section_ratio * drained - left + of_.lower_inflow * voltage));
+}
+
 Vector CoupledTanks::do_next(Index, VectorIn x, VectorIn u) const {
   const double voltage = of_.voltage + u[0];
   if (!(voltage >= 0 && voltage <= of_.highest_voltage))
     return Vector::Constant(2, std::numeric_limits<double>::quiet_NaN());
-  const double step = of_.sampling / static_cast<double>(of_.substeps);
-  const auto inside = [&](double level) { return std::clamp(level, 0.0, of_.height); };
-  double upper = inside(upper_ + x[0]), lower = inside(lower_ + x[1]);
-  for (std::int64_t i = 0; i < of_.substeps; ++i) {
-    const double drained = of_.upper_outlet * std::sqrt(2 * of_.gravity * upper);
-    const double left = of_.lower_outlet * std::sqrt(2 * of_.gravity * lower);
-    upper = inside(upper + step * (of_.upper_inflow * voltage - drained));
-    lower =
-        inside(lower + step * (of_.section_ratio * drained - left + of_.lower_inflow * voltage));
-  }
-  return Vector{{upper - upper_, lower - lower_}};
+  Levels<double> at = inside<double>(upper_ + x[0], lower_ + x[1]);
+  for (std::int64_t i = 0; i < of_.substeps; ++i) at = after_step<double>(at, voltage);
+  return Vector{{at.upper - upper_, at.lower - lower_}};
+}
+
+std::optional<PlantFormulas> CoupledTanks::do_formulas(const PlantVariables& of) const {
+  using formulas::Expression;
+  require_formula_substeps(of_.substeps);
+  const Expression given = of_.voltage + of.u[0];
+  // Twice the same, not defined below 0 and not defined above the highest.
+  const Expression rising = at_least_zero(given),
+                   falling = of_.highest_voltage - at_least_zero(of_.highest_voltage - given);
+  const Expression voltage = 0.5 * (rising + falling);
+  Levels<Expression> at = inside<Expression>(upper_ + of.x[0], lower_ + of.x[1]);
+  for (std::int64_t i = 0; i < of_.substeps; ++i) at = after_step<Expression>(at, voltage);
+  return PlantFormulas{{at.upper - upper_, at.lower - lower_}, {of.x[1]}};
 }
 
 Vector CoupledTanks::do_output(Index, VectorIn x, VectorIn) const { return x.tail(1); }

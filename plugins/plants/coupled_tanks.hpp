@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "cordon/interfaces/plant.hpp"
+#include "cordon/interfaces/plant_formulas.hpp"
 
 namespace cordon::plants {
 
@@ -34,8 +34,10 @@ struct CoupledTanksParameters {
 /// operating point: the equilibrium under the given voltage. Degenerate: an empty tank stays empty,
 /// a full one overflows and stays full. A voltage outside [0, highest_voltage] gives NaN, which
 /// ends a simulation. Accuracy: Euler's method with `substeps` steps: with one, the discrete-time
-/// plant that the linear model belongs to. Errors: Errc::invalid for an operating point outside the
-/// tanks or the range of the pump. Cost: two square roots per substep. Source: [Pourasghar2021,
+/// plant that the linear model belongs to. As formulas: the same steps, levels held between empty
+/// and full by min and max; not defined for a voltage outside. Errors: Errc::invalid for an
+/// operating point outside the tanks or the range of the pump, and for formulas of more than
+/// `most_formula_substeps` substeps. Cost: two square roots per substep. Source: [Pourasghar2021,
 /// (71)], whose printed model (72) numbers the tanks the other way round.
 class CoupledTanks final : public Plant {
  public:
@@ -47,6 +49,17 @@ class CoupledTanks final : public Plant {
   Index do_outputs() const override { return 1; }
   Vector do_next(Index k, VectorIn x, VectorIn u) const override;
   Vector do_output(Index k, VectorIn x, VectorIn u) const override;
+  std::optional<PlantFormulas> do_formulas(const PlantVariables& of) const override;
+
+  /// Of numbers, or of formulas.
+  template <class Number>
+  struct Levels {
+    Number upper, lower;
+  };
+  template <class Number>
+  Levels<Number> inside(const Number& upper, const Number& lower) const;
+  template <class Number>
+  Levels<Number> after_step(const Levels<Number>& at, const Number& voltage) const;
 
   CoupledTanksParameters of_;
   double upper_ = 0, lower_ = 0;  ///< levels at the operating point

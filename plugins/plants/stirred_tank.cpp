@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cordon/core/error.hpp"
+#include "formula_parts.hpp"
 
 namespace cordon::plants {
 
@@ -38,31 +39,61 @@ double StirredTank::cooling(double coolant_flow) const {
          (of_.density * of_.specific_heat * of_.volume);
 }
 
-StirredTank::State StirredTank::rates(const State& at, double cooling) const {
+formulas::Expression StirredTank::cooling(formulas::Expression coolant_flow) const {
+  const double of_flow = of_.coolant_density * of_.coolant_specific_heat;
+  // 1/q by the root, which is not defined below 0.
+  const auto transferred = exp(-of_.heat_transfer / of_flow * power(sqrt(coolant_flow), -2));
+  return of_flow / (of_.density * of_.specific_heat * of_.volume) * coolant_flow *
+         (1 - transferred);
+}
+
+template <class Number>
+StirredTank::State<Number> StirredTank::rates(const State<Number>& at,
+                                              const Number& cooling) const {
+  using std::exp;
   const double exchange = of_.feed_flow / of_.volume;
-  const double reaction =
-      of_.rate_factor * at.concentration * std::exp(-of_.activation_temperature / at.temperature);
+  const Number reaction =
+      of_.rate_factor * at.concentration * exp(-of_.activation_temperature / at.temperature);
   return {exchange * (of_.feed_concentration - at.concentration) - reaction,
           exchange * (of_.feed_temperature - at.temperature) +
               of_.reaction_heat / (of_.density * of_.specific_heat) * reaction +
               cooling * (of_.coolant_temperature - at.temperature)};
 }
 
+template <class Number>
+StirredTank::State<Number> StirredTank::after_step(const State<Number>& at,
+                                                   const Number& cooling) const {
+  const double h = of_.sampling / static_cast<double>(of_.substeps);
+  const auto ahead = [&](const State<Number>& rate, double by) {
+    return State<Number>{at.concentration + by * rate.concentration,
+                         at.temperature + by * rate.temperature};
+  };
+  const State<Number> k1 = rates<Number>(at, cooling),
+                      k2 = rates<Number>(ahead(k1, h / 2), cooling),
+                      k3 = rates<Number>(ahead(k2, h / 2), cooling),
+                      k4 = rates<Number>(ahead(k3, h), cooling);
+  return {at.concentration + h / 6 *
+                                 (k1.concentration + 2 * k2.concentration + 2 * k3.concentration +
+                                  k4.concentration),
+          at.temperature +
+              h / 6 * (k1.temperature + 2 * k2.temperature + 2 * k3.temperature + k4.temperature)};
+}
+
 void StirredTank::find_equilibrium() {
   const double exchange = of_.feed_flow / of_.volume,
                heating = of_.reaction_heat / (of_.density * of_.specific_heat);
   const double lost = cooling(of_.coolant_flow);
-  State& at = equilibrium_;
+  State<double>& at = equilibrium_;
   for (int step = 0; step < newton_steps; ++step) {
-    const State rate = rates(at, lost);
+    const State<double> rate = rates<double>(at, lost);
     const double speed = of_.rate_factor * std::exp(-of_.activation_temperature / at.temperature);
     const double slope =
         speed * at.concentration * of_.activation_temperature / (at.temperature * at.temperature);
     const double cc = -exchange - speed, ct = -slope, tc = heating * speed,
                  tt = -exchange + heating * slope - lost;
     const double determinant = cc * tt - ct * tc;
-    const State change{(ct * rate.temperature - tt * rate.concentration) / determinant,
-                       (tc * rate.concentration - cc * rate.temperature) / determinant};
+    const State<double> change{(ct * rate.temperature - tt * rate.concentration) / determinant,
+                               (tc * rate.concentration - cc * rate.temperature) / determinant};
     at.concentration += change.concentration;
     at.temperature += change.temperature;
     if (!std::isfinite(at.concentration) || !std::isfinite(at.temperature) || at.temperature <= 0)
@@ -79,25 +110,26 @@ void StirredTank::find_equilibrium() {
 }
 
 Vector StirredTank::do_next(Index, VectorIn x, VectorIn u) const {
-  const double lost = cooling(of_.coolant_flow + u[0]),
-               h = of_.sampling / static_cast<double>(of_.substeps);
-  State at{equilibrium_.concentration + x[0], equilibrium_.temperature + x[1]};
-  const auto ahead = [&](const State& rate, double by) {
-    return State{at.concentration + by * rate.concentration,
-                 at.temperature + by * rate.temperature};
-  };
+  const double lost = cooling(of_.coolant_flow + u[0]);
+  State<double> at{equilibrium_.concentration + x[0], equilibrium_.temperature + x[1]};
   for (std::int64_t i = 0; i < of_.substeps; ++i) {
-    const State k1 = rates(at, lost), k2 = rates(ahead(k1, h / 2), lost),
-                k3 = rates(ahead(k2, h / 2), lost), k4 = rates(ahead(k3, h), lost);
-    at.concentration +=
-        h / 6 * (k1.concentration + 2 * k2.concentration + 2 * k3.concentration + k4.concentration);
-    at.temperature +=
-        h / 6 * (k1.temperature + 2 * k2.temperature + 2 * k3.temperature + k4.temperature);
+    at = after_step<double>(at, lost);
     // Arrhenius' law means nothing there, and would give a finite number again.
     if (at.temperature <= 0) return Vector::Constant(2, std::numeric_limits<double>::quiet_NaN());
   }
   return Vector{
       {at.concentration - equilibrium_.concentration, at.temperature - equilibrium_.temperature}};
+}
+
+std::optional<PlantFormulas> StirredTank::do_formulas(const PlantVariables& of) const {
+  using formulas::Expression;
+  require_formula_substeps(of_.substeps);
+  const Expression lost = cooling(of_.coolant_flow + of.u[0]);
+  State<Expression> at{equilibrium_.concentration + of.x[0], equilibrium_.temperature + of.x[1]};
+  for (std::int64_t i = 0; i < of_.substeps; ++i) at = after_step<Expression>(at, lost);
+  return PlantFormulas{
+      {at.concentration - equilibrium_.concentration, at.temperature - equilibrium_.temperature},
+      {of.x[0]}};
 }
 
 Vector StirredTank::do_output(Index, VectorIn x, VectorIn) const { return x.head(1); }

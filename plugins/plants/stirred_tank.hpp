@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "cordon/interfaces/plant.hpp"
+#include "cordon/interfaces/plant_formulas.hpp"
 
 namespace cordon::plants {
 
@@ -35,9 +35,11 @@ struct StirredTankParameters {
 /// first step; in deviations from the equilibrium, x = 0 with u = 0 stays where it is.) Degenerate:
 /// q_c = 0 is a tank without cooling, the limit of the formula. A negative flow gives NaN, which
 /// ends a simulation. Accuracy: classical Runge-Kutta method of fourth order with `substeps` steps.
-/// Near the operating point twice as many steps change x⁺ by less than 10⁻⁹. Errors: Errc::invalid
-/// if no equilibrium is found, or if the substeps are too long to stay in it. Cost: 8 exponentials
-/// per substep. Source: [Xu2014, section 6].
+/// Near the operating point twice as many steps change x⁺ by less than 10⁻⁹. As formulas: the same
+/// steps, for q_c > 0 only, and not defined for sets of temperatures with 0 K in them. Errors:
+/// Errc::invalid if no equilibrium is found, if the substeps are too long to stay in it, and for
+/// formulas of more than `most_formula_substeps` substeps. Cost: 8 exponentials per substep.
+/// Source: [Xu2014, section 6].
 class StirredTank final : public Plant {
  public:
   explicit StirredTank(const StirredTankParameters& parameters);
@@ -48,17 +50,24 @@ class StirredTank final : public Plant {
   Index do_outputs() const override { return 1; }
   Vector do_next(Index k, VectorIn x, VectorIn u) const override;
   Vector do_output(Index k, VectorIn x, VectorIn u) const override;
+  std::optional<PlantFormulas> do_formulas(const PlantVariables& of) const override;
 
+  /// Of numbers, or of formulas.
+  template <class Number>
   struct State {
-    double concentration, temperature;
+    Number concentration, temperature;
   };
   /// Derivatives at a state; `cooling` is the factor of T_c - T, per minute.
-  State rates(const State& at, double cooling) const;
+  template <class Number>
+  State<Number> rates(const State<Number>& at, const Number& cooling) const;
+  template <class Number>
+  State<Number> after_step(const State<Number>& at, const Number& cooling) const;
   double cooling(double coolant_flow) const;
+  formulas::Expression cooling(formulas::Expression coolant_flow) const;
   void find_equilibrium();
 
   StirredTankParameters of_;
-  State equilibrium_;
+  State<double> equilibrium_;
 };
 
 }  // namespace cordon::plants

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Public functions of gain designers and plants check what they are given, and what they get.
 #include <limits>
+#include <optional>
 
 #include <doctest/doctest.h>
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/line_form.hpp"
 #include "cordon/interfaces/gain_designer.hpp"
-#include "cordon/interfaces/plant.hpp"
+#include "cordon/interfaces/plant_formulas.hpp"
 
 using namespace cordon;
 
@@ -52,6 +53,29 @@ class ToldPlant final : public Plant {
   Index next_, output_;
 };
 
+/// x⁺ = x / 2 and y = x1, as many formulas as it was told; or y in a graph of its own.
+class FormulaPlant final : public Plant {
+ public:
+  FormulaPlant(std::size_t next, std::size_t output, bool own_graph = false)
+      : next_(next), output_(output), own_graph_(own_graph) {}
+
+ private:
+  Index do_states() const override { return 2; }
+  Index do_inputs() const override { return 1; }
+  Index do_outputs() const override { return 1; }
+  Vector do_next(Index, VectorIn x, VectorIn) const override { return x / 2; }
+  Vector do_output(Index, VectorIn x, VectorIn) const override { return x.head(1); }
+  std::optional<PlantFormulas> do_formulas(const PlantVariables& of) const override {
+    PlantFormulas made{{next_, of.x[0] / 2}, {output_, of.x[0]}};
+    if (own_graph_) made.output.assign(output_, other_.variable(0));
+    return made;
+  }
+
+  std::size_t next_, output_;
+  bool own_graph_;
+  mutable formulas::Graph other_{{"x1"}};
+};
+
 template <class Call>
 Errc code_of(Call call) {
   try {
@@ -89,4 +113,19 @@ TEST_CASE("a plant is given vectors of its sizes, and answers with them") {
   CHECK(code_of([&] { ToldPlant(2, 0).output(0, x, u); }) == Errc::violated);
   CHECK(code_of([&] { ToldPlant(2, 1).next(0, u, u); }) == Errc::dimension);
   CHECK(code_of([&] { ToldPlant(2, 1).output(0, x, x); }) == Errc::dimension);
+}
+
+TEST_CASE("a plant is given variables of its sizes, and answers with formulas of their graph") {
+  formulas::Graph graph({"x1", "x2", "u1", "k"});
+  const PlantVariables of{
+      {graph.variable(0), graph.variable(1)}, {graph.variable(2)}, graph.variable(3)};
+  CHECK_FALSE(ToldPlant(2, 1).as_formulas(of));
+  const auto made = FormulaPlant(2, 1).as_formulas(of);
+  REQUIRE(made);
+  CHECK(graph.to_string(made->next[0].node()) == "x1*0.5");
+  CHECK(made->output[0].node() == of.x[0].node());
+  CHECK(code_of([&] { FormulaPlant(1, 1).as_formulas(of); }) == Errc::violated);
+  CHECK(code_of([&] { FormulaPlant(2, 2).as_formulas(of); }) == Errc::violated);
+  CHECK(code_of([&] { FormulaPlant(2, 1, true).as_formulas(of); }) == Errc::violated);
+  CHECK(code_of([&] { FormulaPlant(2, 1).as_formulas({of.u, of.u, of.k}); }) == Errc::dimension);
 }

@@ -197,5 +197,7 @@ Expression atan(Expression a) { return made(Operation::arctangent, a); }
 Expression abs(Expression a) { return made(Operation::absolute_value, a); }
 Expression min(Expression a, Expression b) { return made(Operation::minimum, a, b); }
 Expression max(Expression a, Expression b) { return made(Operation::maximum, a, b); }
+Expression min(Expression a, double b) { return min(a, a.graph().constant(b)); }
+Expression max(Expression a, double b) { return max(a, a.graph().constant(b)); }
 
 }  // namespace cordon::formulas

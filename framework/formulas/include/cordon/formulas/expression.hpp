@@ -145,5 +145,7 @@ Expression atan(Expression a);
 Expression abs(Expression a);
 Expression min(Expression a, Expression b);
 Expression max(Expression a, Expression b);
+Expression min(Expression a, double b);
+Expression max(Expression a, double b);
 
 }  // namespace cordon::formulas
