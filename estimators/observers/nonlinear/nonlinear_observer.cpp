@@ -132,6 +132,18 @@ std::string language() {
   return text + "docs/nonlinear.md describes systems, methods and assumptions.\n";
 }
 
+/// Every part may become a variable with inequalities, which are dense.
+void check_relaxed_size(const ObserverContext& context, std::vector<Diagnostic>& problems) {
+  constexpr std::size_t most_parts = 2000;
+  const NonlinearModel& model = *context.model.nonlinear;
+  const std::size_t parts = std::max(model.f->tape().size(), model.g->tape().size());
+  if (parts <= most_parts) return;
+  problems.push_back({"/method",
+                      "\"relaxation\" takes formulas of at most " + std::to_string(most_parts) +
+                          " parts, and these have " + std::to_string(parts),
+                      "use another method, or a plant with fewer \"substeps\""});
+}
+
 std::vector<Diagnostic> check_nonlinear(const ObserverContext& context, const Params& params) {
   if (context.model.is_linear()) {
     return {{"/type", "\"nonlinear\" takes systems of type \"nonlinear\", and this one is linear",
@@ -147,6 +159,7 @@ std::vector<Diagnostic> check_nonlinear(const ObserverContext& context, const Pa
   if (params.integer("parts") > 1 && !params.flag("box") && !has_boxes_only(params))
     problems.push_back({"/parts", "parts narrow the box beside the set, and there is none",
                         "leave out \"box\": false"});
+  if (params.text("method") == "relaxation") check_relaxed_size(context, problems);
   check_bounded_start(context, params, problems);
   check_noises(context, problems);
   return problems;
