@@ -35,8 +35,9 @@ std::string describe_system(const Study& study) {
           ? fmt::format(", sampled every {:.6g} s from continuous time (W then has {})",
                         study.labels.sampling_time, count(study.model.W.generators(), "generator"))
           : "";
-  const char* kind = model.is_descriptor() ? "descriptor" : "lti";
+  std::string kind = model.is_descriptor() ? "descriptor" : "lti";
   if (!study.model.is_linear()) kind = "nonlinear";
+  if (study.plant) kind += " (" + study.plant->type + ")";
   return fmt::format("{}{}, {}, {}, {}, {}, {}{}{}", model.is_uncertain() ? "uncertain " : "", kind,
                      count(study.model.states(), "state"), count(study.model.inputs(), "input"),
                      count(study.model.outputs(), "output"),

@@ -36,7 +36,7 @@ TEST_CASE("a system survives the way to a MAT-file and back") {
     std::vector<std::string> warnings;
     const json::Value root = json::parse(bytes_of(scratch / "back.json"), problems);
     const json::SystemPart imported =
-        json::read_system(*json::Cursor(root, "", problems).find("system"), warnings);
+        json::read_recorded_system(*json::Cursor(root, "", problems).find("system"), warnings);
     REQUIRE_FALSE(problems.any());
     ModeBank b;
     b.modes.push_back({imported.nominal, imported.model});

@@ -7,20 +7,20 @@
 
 #include "cordon/registry/registry.hpp"
 
-namespace cordon::test {
+namespace test {
 
 /// A registry with the plugins of this build.
 struct Plugins {
   Plugins() {
     registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
   }
-  std::shared_ptr<Plant> stirred_tank(const Params& params = {}) const {
-    return registry.make<PlantEntry>("stirred_tank", params);
+  std::shared_ptr<cordon::Plant> stirred_tank(const cordon::Params& params = {}) const {
+    return registry.make<cordon::PlantEntry>("stirred_tank", params);
   }
-  std::shared_ptr<Plant> coupled_tanks(const Params& params = {}) const {
-    return registry.make<PlantEntry>("coupled_tanks", params);
+  std::shared_ptr<cordon::Plant> coupled_tanks(const cordon::Params& params = {}) const {
+    return registry.make<cordon::PlantEntry>("coupled_tanks", params);
   }
-  Registry registry;
+  cordon::Registry registry;
 };
 
-}  // namespace cordon::test
+}  // namespace test

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Studies with modes, faults, diagnosers and plants.
+#include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -163,6 +164,16 @@ TEST_CASE("a plant makes the data") {
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].pointer == "/data/simulate/plant");
   CHECK(problems[0].message == "has 2 inputs, /system has 1");
+}
+
+TEST_CASE("a plant without formulas is no system") {
+  const std::string text = exchanged(valid_study, "\"type\": \"descriptor\",\n\"E\"",
+                                     "\"type\": \"nonlinear\", \"plant\": \"reactor\", \"E\"");
+  const auto problems = problems_of(text);
+  const auto told = std::ranges::find(problems, "/system/plant", &Diagnostic::pointer);
+  REQUIRE(told != problems.end());
+  CHECK(told->message ==
+        "the plant \"reactor\" has no formulas: it can make data, and nothing estimates by it");
 }
 
 TEST_CASE("models of another E cannot follow each other") {

@@ -164,7 +164,7 @@ json::SystemPart checked(const Json& system, const fs::path& file) {
   json::Problems problems;
   const json::Value tree = json::parse(system.dump(), problems);
   std::vector<std::string> warnings;
-  json::SystemPart part = json::read_system(json::Cursor(tree, "", problems), warnings);
+  json::SystemPart part = json::read_recorded_system(json::Cursor(tree, "", problems), warnings);
   if (problems.any()) fail(file, problems);
   return part;
 }

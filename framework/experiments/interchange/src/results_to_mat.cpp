@@ -242,7 +242,7 @@ void results_to_mat(const fs::path& directory, const Target& target, bool with_s
                             ? study->need("system", not_as_written)
                             : std::nullopt;
     if (system) {
-      const json::SystemPart part = json::read_system(*system, warnings);
+      const json::SystemPart part = json::read_recorded_system(*system, warnings);
       ModeBank bank;
       bank.modes.push_back({part.nominal, part.model});
       bank.modes.insert(bank.modes.end(), part.modes.begin(), part.modes.end());

@@ -7,6 +7,7 @@
 
 #include "cordon/formulas/parse.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
+#include "nonlinear_keys.hpp"
 #include "study/reading/read_sets.hpp"
 
 namespace cordon::json {
@@ -45,10 +46,11 @@ class NonlinearReader {
   NonlinearReader(const Cursor& system, std::vector<std::string>& warnings)
       : system_(system), warnings_(warnings), before_(system.problems().met()) {}
 
-  SystemPart read();
+  SystemPart read(const PlantReader& read_plant);
 
  private:
-  void refuse_what_is_linear();
+  void take(PlantSystem plant);
+  void read_written();
   void read_variables(Role role);
   void take_name(const Cursor& at, const std::string& name, Role role);
   void read_parameters();
@@ -98,26 +100,18 @@ const Section& section_h() {
   return section;
 }
 
-/// Keys of linear systems, which somebody may have left.
-void NonlinearReader::refuse_what_is_linear() {
-  const NameList keys{"type", "states", "inputs",     "disturbances", "noises", "parameters",
-                      "f",    "g",      "invariants", "admissible",   "domain", "X0",
-                      "W",    "V",      "U",          "nominal",      "names",  "sampling_time"};
-  for (const char* key : {"A", "B", "C", "D", "E", "F", "Bw", "Dv"}) {
-    if (const auto at = system_.find(key)) {
-      at->error("is a matrix of linear systems, and this one is \"nonlinear\"",
-                "remove it, and write formulas in f and g");
-    }
-  }
-  if (const auto at = system_.find("modes"))
-    at->error("systems of type \"nonlinear\" have one mode", "remove it");
-  if (const auto at = system_.find("continuous"))
-    at->error("formulas are those of the next time, x_{k+1} = f(x_k, w_k, u_k)",
-              "write the step into f, as in \"x1 + dt*(...)\"");
-  NameList all = keys;
-  all.insert(all.end(),
-             {"A", "B", "C", "D", "E", "F", "Bw", "Dv", "modes", "continuous", "disturbance"});
-  system_.expect_keys(all, "key of a nonlinear system", "");
+/// Sizes and functions of a plant, whose variables are called x1, w1, u1, … in messages.
+void NonlinearReader::take(PlantSystem plant) {
+  written_.plant = std::move(plant.spec);
+  if (!plant.f) return;
+  names(Role::state).resize(as_size(plant.states()));
+  names(Role::input).resize(as_size(plant.inputs));
+  names(Role::disturbance).resize(as_size(plant.states()));
+  names(Role::noise).resize(as_size(plant.outputs()));
+  part_.sizes = {plant.states(), plant.inputs, plant.outputs(), 0};
+  model_.inputs = plant.inputs;
+  model_.f = std::move(plant.f);
+  model_.g = std::move(plant.g);
 }
 
 void NonlinearReader::take_name(const Cursor& at, const std::string& name, Role role) {
@@ -289,16 +283,18 @@ void NonlinearReader::compile() {
 
 void NonlinearReader::read_set_of(const char* key, Role role, LineForm& out) {
   const RoleWords& word = words[static_cast<std::size_t>(role)];
-  if (!system_.find(key) && count(role) == 0) {
+  if (!system_.find(key) && count(role) == 0 && !written_.plant) {
     out = make_point(Vector(0));
     return;
   }
   const auto at = system_.need(key, box_form);
   auto X = at ? read_set(*at, warnings_) : std::nullopt;
-  if (!X) return;
+  if (!X || (written_.plant && !model_.f)) return;
   if (X->dim() != count(role)) {
     at->error("has dimension " + std::to_string(X->dim()) + ", must have " +
-              std::to_string(count(role)) + " like " + child(system_.pointer(), word.key));
+              std::to_string(count(role)) + " like " +
+              (written_.plant ? "the " + std::string(word.key) + " of " : "") +
+              child(system_.pointer(), written_.plant ? "plant" : word.key));
     return;
   }
   out = std::move(*X);
@@ -335,8 +331,8 @@ void NonlinearReader::name_labels() {
   name(part_.labels.noises, names(Role::noise));
 }
 
-SystemPart NonlinearReader::read() {
-  refuse_what_is_linear();
+/// What is written as formulas.
+void NonlinearReader::read_written() {
   for (const Role role : {Role::state, Role::input, Role::disturbance, Role::noise})
     read_variables(role);
   read_parameters();
@@ -344,19 +340,28 @@ SystemPart NonlinearReader::read() {
   read_formulas("g", 1, written_.g);
   read_formulas("invariants", 0, written_.invariants);
   compile();
-  read_sets();
-  read_admissible();
   Sizes& sizes = part_.sizes;
   if (system_.find("states")) sizes.states = count(Role::state);
   sizes.inputs = count(Role::input);
   if (!written_.g.empty()) sizes.outputs = static_cast<Index>(written_.g.size());
   sizes.faults = 0;
+}
+
+SystemPart NonlinearReader::read(const PlantReader& read_plant) {
+  expect_nonlinear_keys(system_);
+  const auto plant = system_.find("plant");
+  plant ? take(read_plant(*plant).value_or(PlantSystem{})) : read_written();
+  read_sets();
+  read_admissible();
+  const Sizes& sizes = part_.sizes;
+  const bool known = !plant || model_.f;
+  const auto of = [&](Role role) { return known ? std::optional(count(role)) : std::nullopt; };
   part_.labels = read_labels(system_, {sizes.states, sizes.inputs, sizes.outputs,
-                                       count(Role::disturbance), count(Role::noise), 0});
-  name_labels();
+                                       of(Role::disturbance), of(Role::noise), 0});
+  if (!plant) name_labels();
   if (const auto at = system_.find("nominal"))
     part_.nominal = read_line(*at, max_name).value_or(part_.nominal);
-  part_.good = part_.modes_good = system_.problems().met() == before_;
+  part_.good = part_.modes_good = system_.problems().met() == before_ && model_.f && model_.g;
   if (part_.good) part_.model.nonlinear = std::make_shared<const NonlinearModel>(std::move(model_));
   part_.formulas = std::move(written_);
   return std::move(part_);
@@ -364,8 +369,9 @@ SystemPart NonlinearReader::read() {
 
 }  // namespace
 
-SystemPart read_nonlinear(const Cursor& system, std::vector<std::string>& warnings) {
-  return NonlinearReader(system, warnings).read();
+SystemPart read_nonlinear(const Cursor& system, std::vector<std::string>& warnings,
+                          const PlantReader& read_plant) {
+  return NonlinearReader(system, warnings).read(read_plant);
 }
 
 }  // namespace cordon::json

@@ -308,8 +308,21 @@ const std::vector<std::string>& system_types() {
   return names;
 }
 
-SystemPart read_system(const Cursor& system, std::vector<std::string>& warnings) {
-  if (is_nonlinear(system)) return read_nonlinear(system, warnings);
+SystemPart read_system(const Cursor& system, const ComponentContext& context) {
+  if (is_nonlinear(system)) {
+    return read_nonlinear(system, context.warnings,
+                          [&](const Cursor& plant) { return read_plant_system(plant, context); });
+  }
+  return SystemReader(system, nullptr, context.warnings).read();
+}
+
+SystemPart read_recorded_system(const Cursor& system, std::vector<std::string>& warnings,
+                                const Cursor* results) {
+  if (is_nonlinear(system)) {
+    return read_nonlinear(system, warnings, [&](const Cursor&) {
+      return results ? read_recorded_plant(*results) : std::nullopt;
+    });
+  }
   return SystemReader(system, nullptr, warnings).read();
 }
 

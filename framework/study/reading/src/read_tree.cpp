@@ -43,10 +43,10 @@ SystemPart TreeReader::read_known_system(const Cursor& at) {
   std::vector<std::string>& warnings = result_.study.warnings;
   result_.known = options_.known;
   if (!result_.known || result_.known->source != at.value().parts) {
-    const std::size_t before = at.problems().met();
+    const std::size_t before = at.problems().met(), refusals = result_.refusals.size();
     KnownSystem system{at.value().parts, {}, {}};
-    system.part = read_system(at, system.warnings);
-    if (at.problems().met() != before) {
+    system.part = read_system(at, {registry_, system.warnings, result_.refusals});
+    if (at.problems().met() != before || result_.refusals.size() != refusals) {
       warnings.insert(warnings.end(), system.warnings.begin(), system.warnings.end());
       result_.known = nullptr;
       return std::move(system.part);
@@ -97,6 +97,7 @@ void TreeReader::read_sections() {
   study.labels = std::move(system.labels);
   study.continuous = system.continuous != nullptr;
   written.modes = std::move(system.written);
+  if (system.formulas) study.plant = system.formulas->plant;
   written.formulas = std::move(system.formulas);
 }
 

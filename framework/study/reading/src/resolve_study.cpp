@@ -116,9 +116,7 @@ Json to_json(const Model& model) {
   return system;
 }
 
-Json to_json(const Model& model, const WrittenFormulas& written) {
-  Json system;
-  system["type"] = "nonlinear";
+void add_formulas(Json& system, const WrittenFormulas& written) {
   const char* lists[] = {"states", "inputs", "disturbances", "noises"};
   for (std::size_t i = 0; i < written.names.size(); ++i) {
     if (!written.names[i].empty()) system[lists[i]] = written.names[i];
@@ -127,6 +125,16 @@ Json to_json(const Model& model, const WrittenFormulas& written) {
   system["f"] = written.f;
   system["g"] = written.g;
   if (!written.invariants.empty()) system["invariants"] = written.invariants;
+}
+
+Json to_json(const Model& model, const WrittenFormulas& written, const Registry& registry) {
+  Json system;
+  system["type"] = "nonlinear";
+  if (written.plant) {
+    system["plant"] = to_json(*written.plant, "plant", registry);
+  } else {
+    add_formulas(system, written);
+  }
   const NonlinearModel& formulas = *model.nonlinear;
   if (formulas.admissible) system["admissible"] = to_json(*formulas.admissible);
   if (formulas.undefined == formulas::Undefined::assumed) system["domain"] = "assumed";
@@ -317,7 +325,7 @@ std::string resolve(const Study& study, const Written& written,
   root["title"] = study.title;
   if (!written.plugins.empty()) root["plugins"] = written.plugins;
   root["system"] =
-      written.formulas ? to_json(study.model, *written.formulas) : to_json(study.model);
+      written.formulas ? to_json(study.model, *written.formulas, registry) : to_json(study.model);
   add_labels(root["system"], study.labels);
   add_modes(root["system"], study, written);
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {

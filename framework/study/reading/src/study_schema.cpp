@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -147,34 +148,39 @@ Json systems(const Json& more) {
             described(descriptor, "E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v")}}};
 }
 
-/// Systems by formulas.
-Json nonlinear_system(const Json& names, const Json& sampling_time) {
+/// Systems by formulas: written in the study, or those of a plant.
+std::array<Json, 2> nonlinear_systems(const Json& names, const Json& sampling_time) {
   const Json set = reference("set"), formulas = list_of(text(formulas::longest_formula)),
              identifiers = list_of(text(60));
   const Json parameters{{"type", "object"}, {"additionalProperties", {{"type", "number"}}}};
-  const Json system =
-      typed("nonlinear",
-            {{"states", described(identifiers, "names: a letter, then letters, digits and _")},
-             {"inputs", identifiers},
-             {"disturbances", identifiers},
-             {"noises", identifiers},
-             {"parameters", described(parameters, "numbers with names")},
-             {"f", described(formulas, "the next state, one formula per state")},
-             {"g", described(formulas, "the outputs")},
-             {"invariants", described(formulas, "are 0 for the true state at all times")},
-             {"admissible", described(set, "holds the state at all times, as is assumed")},
-             {"domain", described(one_of({"refused", "assumed"}),
-                                  "where a formula is not defined on a set: no estimate, or the "
-                                  "state is assumed to lie where it is defined")},
-             {"X0", set},
-             {"W", set},
-             {"V", set},
-             {"U", set},
-             {"nominal", text(200)},
-             {"names", names},
-             {"sampling_time", sampling_time}},
-            {"states", "f", "g", "X0"});
-  return described(system, "x_{k+1} = f(x_k, w_k, u_k, k), y_k = g(x_k, v_k, u_k, k)");
+  const Json common{
+      {"admissible", described(set, "holds the state at all times, as is assumed")},
+      {"domain", described(one_of({"refused", "assumed"}),
+                           "where a formula is not defined on a set: no estimate, or the "
+                           "state is assumed to lie where it is defined")},
+      {"X0", set},
+      {"W", set},
+      {"V", set},
+      {"U", set},
+      {"nominal", text(200)},
+      {"names", names},
+      {"sampling_time", sampling_time}};
+  Json written{{"states", described(identifiers, "names: a letter, then letters, digits and _")},
+               {"inputs", identifiers},
+               {"disturbances", identifiers},
+               {"noises", identifiers},
+               {"parameters", described(parameters, "numbers with names")},
+               {"f", described(formulas, "the next state, one formula per state")},
+               {"g", described(formulas, "the outputs")},
+               {"invariants", described(formulas, "are 0 for the true state at all times")}};
+  written.update(common);
+  Json of_plant{{"plant", described(reference("plant"), "whose formulas they are")}};
+  of_plant.update(common);
+  return {described(typed("nonlinear", written, {"states", "f", "g", "X0"}),
+                    "x_{k+1} = f(x_k, w_k, u_k, k), y_k = g(x_k, v_k, u_k, k)"),
+          described(typed("nonlinear", of_plant, {"plant", "X0", "W", "V"}),
+                    "the formulas of a plant: x_{k+1} = next(k, x_k, u_k) + w_k, y_k = output(k, "
+                    "x_k, u_k) + v_k")};
 }
 
 Json effectiveness() {
@@ -257,7 +263,8 @@ Json definitions(const Registry& registry) {
        {"modes",
         described(Json{{"type", "array"}, {"items", reference("mode")}, {"maxItems", 1000}},
                   "the faults that diagnosers tell apart")}});
-  defs["system"]["oneOf"].push_back(nonlinear_system(system_names, sampling_time));
+  for (const Json& system : nonlinear_systems(system_names, sampling_time))
+    defs["system"]["oneOf"].push_back(system);
   defs["mode_system"] = systems(Json::object());
   defs["effectiveness"] = effectiveness();
   defs["mode"] = modes();

@@ -124,6 +124,7 @@ class Placer {
         std::find(parts.begin(), parts.end(), step(2).key) != parts.end())
       return {step(2).key, ""};
     if (depth == 1 && is(0, "metrics")) return {"metric", ""};
+    if (depth == 1 && is(0, "system") && is(1, "plant")) return {"plant", ""};
     if (depth == 2 && is(0, "data") && is(1, "simulate") && is(2, "plant")) return {"plant", ""};
     return {};
   }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/results/file_heads.hpp"
 
+#include "cordon/interfaces/nonlinear_model.hpp"
 #include "cordon/registry/build.hpp"
+#include "study/reading/formula_graph.hpp"
 #include "study/results/measures.hpp"
 #include "study/text/fingerprint.hpp"
 #include "study/text/host.hpp"
@@ -9,6 +11,20 @@
 namespace cordon::detail {
 
 using Layout = JsonWriter::Layout;
+
+namespace {
+
+/// Of a plant, which its plugin has made.
+void write_formulas(JsonWriter& json, const NonlinearModel& model) {
+  json.key("formulas").begin_object(Layout::lines).member("inputs", model.inputs);
+  json.key("f");
+  json::write_graph(*model.f, json);
+  json.key("g");
+  json::write_graph(*model.g, json);
+  json.end_object();
+}
+
+}  // namespace
 
 void begin_results_file(JsonWriter& json, const Study& study, const Registry& registry,
                         const std::vector<Measure>& measures) {
@@ -31,6 +47,7 @@ void begin_results_file(JsonWriter& json, const Study& study, const Registry& re
   json.member("title", study.title).member("study_hash", fingerprint(study.resolved));
   json.key("study");
   study.resolved.empty() ? json.null() : json.raw(study.resolved);
+  if (study.plant && study.sweep.empty()) write_formulas(json, *study.model.nonlinear);
   write_measures(json, measures);
 }
 

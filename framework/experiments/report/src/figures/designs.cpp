@@ -339,7 +339,7 @@ void add_designs(const RunFiles& files, Report& report) {
   const auto study = files.root().find("study");
   const auto at = study && study->is(Kind::object) ? study->find("system") : std::nullopt;
   std::vector<std::string> warnings;
-  if (at && at->is(Kind::object)) system = json::read_system(*at, warnings);
+  if (at && at->is(Kind::object)) system = json::read_recorded_system(*at, warnings);
   std::vector<Design> designs;
   for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
     if (files.pipelines()[p].kind != PipelineKind::design) continue;

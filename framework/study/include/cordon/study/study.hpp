@@ -190,10 +190,11 @@ struct SweepAxis {
 struct Study {
   std::filesystem::path file;
   std::string title;
-  Model model;                      ///< of the nominal mode
-  std::string nominal = "healthy";  ///< its name
-  std::vector<Mode> modes;          ///< the other modes
-  Labels labels = {};               ///< what states, inputs and so on are called
+  Model model;                              ///< of the nominal mode
+  std::optional<ComponentSpec> plant = {};  ///< that the system is: the model has its formulas
+  std::string nominal = "healthy";          ///< its name
+  std::vector<Mode> modes;                  ///< the other modes
+  Labels labels = {};                       ///< what states, inputs and so on are called
   bool continuous = false;  ///< the model was written in continuous time, and is sampled here
   std::variant<SimulateSpec, CsvSpec>
       data;  ///< pipelines with a designer take seed, seeds, noise and start of simulated data

@@ -302,9 +302,9 @@ RecordedRun read_run(const std::filesystem::path& directory) {
   StepReader steps;
   const Value tree =
       read_large(file,
-                 {.kept = {"/cordon_results", "/study/system", "/study/data/simulate/dropouts",
-                           "/study/data/csv/missing", "/study/data/csv/irregular", "/sets",
-                           "/points", "/pipelines"},
+                 {.kept = {"/cordon_results", "/formulas", "/study/system",
+                           "/study/data/simulate/dropouts", "/study/data/csv/missing",
+                           "/study/data/csv/irregular", "/sets", "/points", "/pipelines"},
                   .streamed = {"/pipelines/*/steps/*", "/points/*"},
                   .take =
                       [&](const Cursor& at, const std::vector<std::size_t>& place) {
@@ -326,7 +326,7 @@ RecordedRun read_run(const std::filesystem::path& directory) {
                             : std::nullopt;
     if (study && may_have_gaps(*study)) run.data.missing = MissingValue::skip;
     std::vector<std::string> warnings;
-    SystemPart part = system ? read_system(*system, warnings) : SystemPart{};
+    SystemPart part = system ? read_recorded_system(*system, warnings, &root) : SystemPart{};
     if (part.good && pipelines && pipelines->expect(Kind::array, not_as_written)) {
       for (std::size_t i = 0; i < pipelines->size(); ++i) {
         if (auto pipeline = read_pipeline(pipelines->item(i), part, i, steps)) {

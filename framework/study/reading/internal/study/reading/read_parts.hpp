@@ -63,6 +63,7 @@ Model model_of(const WrittenMode& mode, const Model& nominal);
 
 /// A system of formulas as it is written.
 struct WrittenFormulas {
+  std::optional<ComponentSpec> plant;  ///< whose formulas they are; nothing of it is written then
   std::array<std::vector<std::string>, 4> names;  ///< of states, inputs, disturbances and noises
   std::vector<std::pair<std::string, double>> parameters;
   std::vector<std::string> f, g, invariants;
@@ -83,13 +84,22 @@ struct SystemPart {
   std::optional<WrittenFormulas> formulas;  ///< of a nonlinear system
 
   // What tells how many there are, for messages.
-  std::string states_at() const { return formulas ? "/system/states" : "the rows of /system/A"; }
-  std::string inputs_at() const { return formulas ? "/system/inputs" : "the columns of /system/B"; }
-  std::string outputs_at() const { return formulas ? "/system/g" : "the rows of /system/C"; }
+  std::string states_at() const { return place("/system/states", "the rows of /system/A"); }
+  std::string inputs_at() const { return place("/system/inputs", "the columns of /system/B"); }
+  std::string outputs_at() const { return place("/system/g", "the rows of /system/C"); }
+  std::string place(const char* of_formulas, const char* of_matrices) const {
+    if (formulas && formulas->plant) return "/system/plant";
+    return formulas ? of_formulas : of_matrices;
+  }
 };
 const std::vector<std::string>& system_types();
+struct ComponentContext;
 /// A system with its modes.
-SystemPart read_system(const Cursor& system, std::vector<std::string>& warnings);
+SystemPart read_system(const Cursor& system, const ComponentContext& context);
+/// The same from results, without plugins. `results`: the whole of them, which keep the formulas of
+/// a plant; null: they are not asked for, and a system that is a plant is not good.
+SystemPart read_recorded_system(const Cursor& system, std::vector<std::string>& warnings,
+                                const Cursor* results = nullptr);
 /// A model inside a mode: without modes, U and F; X0 is that of `nominal` where it is absent. It
 /// has the sizes of /system.
 SystemPart read_mode_system(const Cursor& system, const SystemPart& nominal,
