@@ -166,6 +166,17 @@ TEST_CASE("what is wrong with a plant as a system is told at its place, all at o
   expect_told(Run(study), "above the highest");
 }
 
+TEST_CASE("relaxations of a long integration are refused before they take the memory") {
+  Json study = stirred_tank();
+  study["system"]["plant"]["substeps"] = 100;
+  study["pipelines"].erase(0);
+  study["pipelines"][0]["observer"] = {{"type", "nonlinear"}, {"method", "relaxation"}};
+  const Run run(study);
+  CHECK(run.outcome.code == 2);
+  expect_told(run, "/pipelines/0/observer/method");
+  expect_told(run, "\"relaxation\" takes formulas of at most 2000 parts, and these have 7");
+}
+
 TEST_CASE("an input outside the range of the pump ends the simulation at its place") {
   Json study = tanks();
   study["data"]["simulate"]["input"][0]["amplitude"] = 4;
