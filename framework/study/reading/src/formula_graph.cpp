@@ -60,6 +60,10 @@ class GraphReader {
 
   /// A number of a node, as the graph numbers it.
   std::optional<int> read_place(const Cursor& at) const {
+    if (places_.empty()) {
+      at.error("names a node before it, and there is none", "\"cordon run\" writes them");
+      return std::nullopt;
+    }
     const auto place = read_integer(at, 0, static_cast<double>(places_.size()) - 1);
     return place ? std::optional<int>(places_[static_cast<std::size_t>(*place)]) : std::nullopt;
   }
@@ -95,7 +99,7 @@ class GraphReader {
     const auto lower = read_number(lower_at), upper = read_number(upper_at);
     if (!lower || !upper) return std::nullopt;
     if (*lower > *upper) {
-      lower_at.error("is above the upper bound");
+      lower_at.error("is above the upper bound", "\"cordon run\" writes bounds in order");
       return std::nullopt;
     }
     const Interval value{*lower, *upper};
