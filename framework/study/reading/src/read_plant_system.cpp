@@ -26,6 +26,13 @@ std::vector<std::string> variable_names(Index states, const char* drawn, Index c
   return names;
 }
 
+bool has_sizes_of_systems(const Plant& plant) {
+  const auto between = [](Index size, Index lowest) {
+    return size >= lowest && size <= max_dimension;
+  };
+  return between(plant.states(), 1) && between(plant.outputs(), 1) && between(plant.inputs(), 0);
+}
+
 /// Formulas of the plant, with a drawn variable added to each; null: it has none.
 std::shared_ptr<const formulas::Function> sum_of(
     const Plant& plant, const char* drawn,
@@ -50,11 +57,12 @@ std::optional<PlantSystem> read_plant_system(const Cursor& at, const ComponentCo
   if (!spec) return std::nullopt;
   try {
     const auto plant = context.registry.make<PlantEntry>(spec->type, spec->params);
-    for (const Index size : {plant->states(), plant->outputs()}) {
-      if (size >= 1 && size <= max_dimension && plant->inputs() <= max_dimension) continue;
+    if (!has_sizes_of_systems(*plant)) {
       at.error("has " + counted(plant->states(), "state") + ", " +
-               counted(plant->inputs(), "input") + " and " + counted(plant->outputs(), "output") +
-               ", systems have 1 to " + std::to_string(max_dimension));
+                   counted(plant->inputs(), "input") + " and " +
+                   counted(plant->outputs(), "output"),
+               "systems have 1 to " + std::to_string(max_dimension) +
+                   " states and outputs, and no more inputs");
       return std::nullopt;
     }
     PlantSystem system{*spec, plant->inputs(), nullptr, nullptr};
@@ -62,8 +70,7 @@ std::optional<PlantSystem> read_plant_system(const Cursor& at, const ComponentCo
     system.g = sum_of(*plant, "v", &PlantFormulas::output, plant->outputs());
     if (system.f && system.g) return system;
     at.error("the plant " + in_quotes(spec->type) +
-                 " has no formulas: it can make data, and "
-                 "nothing estimates by it",
+                 " has no formulas: it can make data, and nothing estimates by it",
              "write formulas in f and g, or a linear system with \"plant\" in /data/simulate");
   } catch (const Error& error) {
     const bool broken = error.code() == Errc::violated || error.code() == Errc::dimension;
