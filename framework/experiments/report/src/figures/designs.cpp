@@ -346,9 +346,12 @@ void add_designs(const RunFiles& files, Report& report) {
     if (auto design = design_of(files, p, system.model.states()))
       designs.push_back(std::move(*design));
   }
-  files.check();  // what follows computes with the models
-  std::vector<const Model*> bank{&system.model};
-  for (const Mode& mode : system.modes) bank.push_back(&mode.model);
+  files.check();                   // what follows computes with the models
+  std::vector<const Model*> bank;  // none of formulas, which no design is for
+  if (system.good && system.model.is_linear()) {
+    bank.push_back(&system.model);
+    for (const Mode& mode : system.modes) bank.push_back(&mode.model);
+  }
   add_overview(files, designs, report);
   add_inputs(files, report);
   for (const Design& design : designs) {
