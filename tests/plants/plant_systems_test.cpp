@@ -89,6 +89,12 @@ TEST_CASE("what is verified are the formulas that the run has left, without a pl
   const std::string node = "[\"constant\", 1962, 1962]";
   run.exchange(node, "[\"constant\", 1000, 1000]");
   CHECK(run("verify out --quiet").code == 4);
+  // Sizes are those of the data.
+  run.exchange("\"inputs\": 1,\n", "\"inputs\": 2,\n");
+  CHECK(run("verify out").says("there is no column \"u_2\""));
+  run.exchange("\"inputs\": 2,\n", "\"inputs\": -1,\n");
+  CHECK(run("verify out").says("/formulas/inputs"));
+  run.exchange("\"inputs\": -1,\n", "\"inputs\": 1,\n");
   run.exchange("[\"constant\", 1000, 1000]", "[\"sinh\", 1]");
   const test::Outcome unknown = run("verify out");
   CHECK(unknown.code == 2);
@@ -126,7 +132,25 @@ TEST_CASE("parameters of the plant are swept") {
                                     "values": [1, 2]}])");
   const Run run(study);
   CAPTURE(run.outcome.out);
-  CHECK(run.outcome.code == 0);
+  REQUIRE(run.outcome.code == 0);
+  CHECK(run.results()["points"].size() == 2 * 3);
+  CHECK_FALSE(run.results().contains("formulas"));  // every point has others
+  CHECK(run("report out").code == 0);
+  CHECK(run("convert out out.mat").code == 0);
+}
+
+TEST_CASE("the example is verified, every step of every pipeline") {
+  const Run run(
+      Json::parse(bytes_of(CORDON_SOURCE_DIR "/examples/studies/nonlinear_coupled_tanks.json")));
+  CAPTURE(run.outcome.out);
+  REQUIRE(run.outcome.code == 0);
+  const test::Outcome verified = run("verify out --json");
+  CAPTURE(verified.out);
+  REQUIRE(verified.code == 0);
+  const Json told = Json::parse(verified.out);
+  CHECK(told["verified"] == true);
+  CHECK(told["pipelines"].size() == 6);
+  for (const Json& pipeline : told["pipelines"]) CHECK(pipeline["steps"] == 61);
 }
 
 TEST_CASE("what is wrong with a plant as a system is told at its place, all at once") {
