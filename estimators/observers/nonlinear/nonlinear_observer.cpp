@@ -29,6 +29,7 @@ NonlinearOptions options_from(const Params& params, const BackendInfo& backend) 
   options.natural_only = method == "natural";
   options.boxes_only = has_boxes_only(params);
   options.relaxes = method == "relaxation";
+  options.lifts = method == "lifted";
   if (method == "mean_value") options.form = formulas::AffineForm::mean_value;
   if (method == "dc") options.form = formulas::AffineForm::convex_differences;
   options.contracts = params.flag("contraction");
@@ -173,9 +174,11 @@ CORDON_COMPONENT(observer, nonlinear) {
       "method",
       "the enclosure of f and g: boxes alone, by natural extensions (natural) or the best "
       "range (interval); or a set of the backend by the mean value, by the first order "
-      "with bounded second derivatives, the same bounded by differences of convex "
-      "functions as well (dc), or by linear relaxations (exact intersections only)",
-      {"natural", "interval", "mean_value", "first_order", "dc", "relaxation"}, "first_order");
+      "with bounded second derivatives, the same with squares and products kept "
+      "(lifted) or bounded by differences of convex functions as well (dc), or by linear "
+      "relaxations (exact intersections only)",
+      {"natural", "interval", "mean_value", "first_order", "lifted", "dc", "relaxation"},
+      "first_order");
   schema.flag("contraction", "contract a box by the outputs and invariants (HC4)", true);
   schema.flag("box", "carry a box beside the set: the estimate is their intersection", true);
   schema.integer("parts",

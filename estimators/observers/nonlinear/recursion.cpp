@@ -8,6 +8,7 @@
 #include "cordon/core/tolerances.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "observers/nonlinear/box_parts.hpp"
+#include "observers/nonlinear/lifted_image.hpp"
 
 namespace cordon::estimators {
 
@@ -207,9 +208,29 @@ AffineRows NonlinearRecursion::predicted_rows(const Box& range) const {
   return form;
 }
 
+Enclosure NonlinearRecursion::predicted_set(const Box& range) const {
+  const Index n = model_->states();
+  const AffineRows form = predicted_rows(range);
+  const auto around = [&](const Vector& radius) { return backend_->box({-radius, radius}); };
+  if (options_.lifts) {
+    const LineForm Z = cartesian_product(X_->line_form(), W_->line_form());
+    const bool outward = backend_->info().rounding != Rounding::nominal;
+    if (auto lifted = lifted_image(f_, form, Z, outward)) {
+      for (Index row = 0; row < n; ++row)
+        lifted->radius[row] =
+            directed::plus(lifted->radius[row], room(f_.rounding_error(row))).upper;
+      const Enclosure image = backend_->sum(backend_->import(lifted->set), around(lifted->radius));
+      return backend_->reduce(image, options_.budget);
+    }
+  }
+  const Matrix disturbed = form.slope.rightCols(model_->disturbances()),
+               unit = Matrix::Identity(n, n);
+  const Term terms[] = {{disturbed, W_}, {unit, around(form.radius)}};
+  return backend_->predict(X_, {form.slope.leftCols(n), form.offset, terms});
+}
+
 bool NonlinearRecursion::predict(VectorIn u, Index k) {
   if (B_.is_empty()) return false;
-  const Index n = model_->states();
   if (!B_.is_bounded())
     throw Error(Errc::not_enclosed, "the estimate at k = " + std::to_string(k) +
                                         " is unbounded, and formulas are enclosed over boxes");
@@ -223,12 +244,7 @@ bool NonlinearRecursion::predict(VectorIn u, Index k) {
     B_ = model_->admissible ? intersected(range, admissible_hull_) : range;
     return !B_.is_empty();
   }
-  const AffineRows form = predicted_rows(range);
-  const Enclosure rest = backend_->box({-form.radius, form.radius});
-  const Matrix disturbed = form.slope.rightCols(model_->disturbances()),
-               unit = Matrix::Identity(n, n);
-  const Term terms[] = {{disturbed, W_}, {unit, rest}};
-  set(backend_->predict(X_, {form.slope.leftCols(n), form.offset, terms}));
+  set(predicted_set(range));
   B_ = std::move(range);
   if (!model_->admissible && !needs_predicted_hull_) return true;
   B_ = options_.carries_box ? intersected(hull(), B_) : hull();

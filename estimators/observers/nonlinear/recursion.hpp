@@ -36,6 +36,7 @@ struct NonlinearOptions {
   bool natural_only = false;  ///< of ranges the natural extension
   /// Prediction and correction in one program of linear relaxations; sets with exact intersections.
   bool relaxes = false;
+  bool lifts = false;       ///< squares and products of factors are kept, in `first_order`
   bool contracts = true;    ///< by HC4, beside the affine forms
   bool carries_box = true;  ///< else B is the hull of X at each step
   bool row_by_row = false;  ///< corrections renew the affine form after each row
@@ -81,6 +82,7 @@ class NonlinearRecursion {
   Box range_of(const formulas::BoxEnclosure& enclosure) const;
   void cut_into_parts(Box& range, VectorIn u, Index k);
   AffineRows predicted_rows(const Box& range) const;
+  Enclosure predicted_set(const Box& range) const;
   bool contract(const Sample& now);
   bool contract(const Sample& now, Box& box);
   bool contract_row(Index row, double value, double room);

@@ -185,6 +185,17 @@ std::optional<BoxEnclosure::Form> BoxEnclosure::first_order(Index row) const {
   return is_bounded(row, form) ? std::optional(form) : std::nullopt;
 }
 
+std::optional<BoxEnclosure::Quadratic> BoxEnclosure::quadratic(Index row) const {
+  if (!first_order(row)) return std::nullopt;
+  Quadratic made{at_center_[as_size(row)], {}, {}};
+  for (std::size_t e = 0; e < evaluator_.partials(row); ++e)
+    made.gradient.push_back(
+        {evaluator_.partial(row, e).variable, gradient_at_center_[first_entry(row) + e]});
+  for (std::size_t e = 0; e < evaluator_.second_partials(row); ++e)
+    made.curvature.push_back(evaluator_.second_partial(row, e));
+  return made;
+}
+
 Interval BoxEnclosure::range(Index row) const {
   Interval range = natural_[as_size(row)];
   for (const std::optional<Form>& form : {mean_value(row), first_order(row)}) {

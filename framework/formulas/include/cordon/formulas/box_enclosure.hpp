@@ -71,6 +71,15 @@ class BoxEnclosure {
   /// natural extension with slope 0; the radius is infinite if there is none.
   Affine affine(Index row, Eigen::Ref<Eigen::RowVectorXd> slope) const;
 
+  /// F_row(z) = value + gradient · (z - h) + ½ (z - h)ᵀ H (z - h), with H within `curvature`.
+  struct Quadratic {
+    Interval value;
+    std::vector<Evaluator::Partial> gradient;
+    std::vector<Evaluator::SecondPartial> curvature;  ///< i ≤ j; the matrix is symmetric
+  };
+  /// Nothing where the second derivatives are not bounded, or are not those of the form.
+  std::optional<Quadratic> quadratic(Index row) const;
+
  private:
   void take_derivatives(std::span<const Interval> variables);
   void take_slopes(std::span<const Interval> variables);
