@@ -79,7 +79,7 @@ void BoxSimplex::perturb_costs() {
 
 /// The objective as it was given. Variables whose reduced costs vanish stay where they are, as do
 /// the basic values then.
-bool BoxSimplex::take_back_nudges() {
+bool BoxSimplex::take_back_perturbations() {
   cost_.head(g_) = objective_;
   perturbed_ = false;
   find_multipliers();
@@ -119,7 +119,7 @@ BoxSimplex::Status BoxSimplex::solve(double enough, Index most) {
     const bool is_below = enough > any && objective() < enough;
     const Index row = is_below ? none : leaving_row();
     if (row == none && perturbed_) {
-      if (!take_back_nudges()) return Status::unsolved;
+      if (!take_back_perturbations()) return Status::unsolved;
       continue;
     }
     if (is_below) return concluded(Status::below);

@@ -65,7 +65,7 @@ class BoxSimplex {
   void transform(const double* v, Vector& image) const;
   void update_inverse(Index row);
   void perturb_costs();
-  bool take_back_nudges();
+  bool take_back_perturbations();
   Status concluded(Status status);
   Status solve(double enough, Index most);
   Index leaving_row() const;
