@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string_view>
 
 #include "cordon/core/error.hpp"
 
@@ -19,6 +20,8 @@ constexpr std::array<const char*, 20> operation_names{
     "constant",   "variable", "add",  "subtract", "negate", "multiply", "power",
     "real_power", "sqrt",     "exp",  "log",      "sin",    "cos",      "tan",
     "asin",       "acos",     "atan", "abs",      "min",    "max"};
+static_assert(operation_names.back() == std::string_view("max") &&
+              operation_names.size() == static_cast<std::size_t>(Operation::maximum) + 1);
 
 /// Operands, before the other numbers of a node.
 int operands_of(Operation operation) {
