@@ -113,6 +113,21 @@ TEST_CASE("bad rows of recorded data are found by validate") {
   CHECK(outcome.out.find("oops") != std::string::npos);
 }
 
+TEST_CASE("a header in Latin-1 is told, also where times are read beside it") {
+  const Scratch scratch;
+  const std::string tutorial = std::string(CORDON_SOURCE_DIR) + "/examples/first_study/";
+  std::ifstream study(tutorial + "tanks.json"), data(tutorial + "tanks.csv");
+  const auto file =
+      scratch.write("tanks.json", std::string(std::istreambuf_iterator<char>(study), {}));
+  std::string header, row, rows;
+  std::getline(data, header);
+  while (std::getline(data, row)) rows += row + ",1\n";
+  scratch.write("tanks.csv", header + ",Temp_\xb0\x43\n" + rows);
+  const Outcome outcome = run("validate " + file.string(), "2>&1");
+  CHECK(outcome.code == 2);
+  CHECK(outcome.out.find("the header is not UTF-8") != std::string::npos);
+}
+
 TEST_CASE("validate opens the recorded data of every value of a sweep") {
   const Scratch scratch;
   auto study = nlohmann::ordered_json::parse(std::ifstream(examples + "recorded_walk.json"));

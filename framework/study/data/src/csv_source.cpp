@@ -119,7 +119,7 @@ void CsvSource::validate() {
     report("/data/csv/file", row.line, "header row: " + row.problem);
     return;
   }
-  locate(row);
+  if (!locate(row)) return;
   StepClock clock(sampling_time_, fills_);
   while (!too_many() && reader.next(row)) {
     check_row(row);
@@ -132,14 +132,14 @@ void CsvSource::validate() {
            "below the header it needs a row for every step");
 }
 
-void CsvSource::locate(const CsvRow& row) {
+bool CsvSource::locate(const CsvRow& row) {
   std::vector<std::string> header;
   for (const std::string& field : row.fields) header.push_back(trimmed(field));
   width_ = header.size();
   const std::string& first = header.front();
   if (first.starts_with("\xFF\xFE") || first.starts_with("\xFE\xFF")) {
     report("/data/csv/file", row.line, "the file is UTF-16", "save it as UTF-8");
-    return;
+    return false;
   }
   if (header.size() == 1 && first.find_first_of(";\t") != std::string::npos) {
     const bool semicolon = first.find(';') != std::string::npos;
@@ -151,12 +151,12 @@ void CsvSource::locate(const CsvRow& row) {
   if (first.starts_with('#') || first.starts_with('%')) {
     report("/data/csv/file", row.line, "the first line is a comment, the header row must be first",
            "remove lines that begin with " + first.substr(0, 1));
-    return;
+    return false;
   }
   if (std::any_of(header.begin(), header.end(), [](const auto& name) { return !is_utf8(name); })) {
     report("/data/csv/file", row.line, "the header is not UTF-8 (it may be Latin-1)",
            "save the file as UTF-8");
-    return;
+    return false;
   }
   std::set<std::string> seen, told;
   for (const std::string& name : header) {
@@ -166,6 +166,7 @@ void CsvSource::locate(const CsvRow& row) {
   }
   for (Columns* columns : {&inputs_, &outputs_, &truth_, &mode_, &time_})
     find_columns(*columns, header);
+  return true;
 }
 
 void CsvSource::find_columns(Columns& columns, const std::vector<std::string>& header) {

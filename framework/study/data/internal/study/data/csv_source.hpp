@@ -37,7 +37,7 @@ class CsvSource final : public DataSource {
 
   void check_sizes(const CsvSpec& spec, const Model& model) const;
   void validate();
-  void locate(const CsvRow& header);
+  bool locate(const CsvRow& header);
   void find_columns(Columns& columns, const std::vector<std::string>& header);
   std::optional<Vector> numbers(const CsvRow& row, const Columns& columns);
   std::optional<Index> mode(const CsvRow& row);
