@@ -125,7 +125,7 @@ double write_affine(const AffineRows& rows, Index q, const LineForm& Z, Row& row
 }
 
 /// The products of all pairs of constraints, from row `at` on.
-void write_products(const LineForm& Z, const Columns& columns, bool outward, LineForm& image) {
+void write_products(const LineForm& Z, const Columns& columns, LineForm& image) {
   Index at = Z.constraints();
   for (Index r = 0; r < Z.constraints(); ++r) {
     for (Index s = r; s < Z.constraints(); ++s, ++at) {
@@ -141,7 +141,7 @@ void write_products(const LineForm& Z, const Columns& columns, bool outward, Lin
                   directed::times(Z.A(r, i), Z.A(s, j)) + directed::times(Z.A(r, j), Z.A(s, i)));
       }
       image.b[at] = row.middle(right);
-      if (outward) image.A(at, columns.count() + at - Z.constraints()) = radius;
+      image.A(at, columns.count() + at - Z.constraints()) = radius;
     }
   }
 }
@@ -152,8 +152,8 @@ std::optional<LiftedImage> lifted_image(const formulas::BoxEnclosure& function,
                                         const AffineRows& rows, const LineForm& Z, bool outward) {
   if (Z.lines() > 0 || Z.generators() > most_lifted) return std::nullopt;
   const Columns columns{Z.generators()};
-  const Index n = rows.offset.size(), m = Z.constraints(), products = m * (m + 1) / 2,
-              factors = columns.count() + (outward ? products : 0);
+  const Index n = rows.offset.size(), m = Z.constraints(), products = outward ? m * (m + 1) / 2 : 0,
+              factors = columns.count() + products;
   LineForm image{Matrix(n, 0),
                  Matrix::Zero(n, factors),
                  Vector(n),
@@ -163,16 +163,24 @@ std::optional<LiftedImage> lifted_image(const formulas::BoxEnclosure& function,
   Vector radius = Vector::Zero(n);
   for (Index q = 0; q < n; ++q) {
     Row row(image.G, q, radius[q]);
-    if (auto quadratic = function.quadratic(q)) {
+    auto quadratic = function.quadratic(q);
+    if (quadratic) {
       image.c[q] = QuadraticRow(function, std::move(*quadratic), Z).write(columns, row, radius[q]);
-    } else {
-      image.c[q] = write_affine(rows, q, Z, row);
-      add_up(radius[q], rows.radius[q]);
+      const double lifted = image.G.row(q).lpNorm<1>() + radius[q],
+                   affine = (rows.slope.row(q) * Z.G).lpNorm<1>() + rows.radius[q];
+      if (outward || lifted <= affine) continue;
+      image.G.row(q).setZero();
+      radius[q] = 0;
     }
+    image.c[q] = write_affine(rows, q, Z, row);
+    add_up(radius[q], rows.radius[q]);
   }
   image.A.topLeftCorner(m, Z.generators()) = Z.A;
   image.b.head(m) = Z.b;
-  write_products(Z, columns, outward, image);
+  if (outward) write_products(Z, columns, image);
+  if (!image.G.allFinite() || !image.c.allFinite() || !radius.allFinite() || !image.A.allFinite() ||
+      !image.b.allFinite())
+    return std::nullopt;
   return LiftedImage{std::move(image), std::move(radius)};
 }
 

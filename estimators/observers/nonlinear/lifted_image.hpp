@@ -25,9 +25,14 @@ struct LiftedImage {
   Vector radius;
 };
 
-/// Over the last box of `function`. A row without bounded second derivatives is that of `rows`, an
-/// enclosure over the same box. `outward`: the new constraints hold in real arithmetic. Nothing
-/// where Z has lines or more generators than `most_lifted`.
+/// Over the last box of `function`. A row without bounded second derivatives, or nominal with
+/// factors that reach further than those of `rows`, an enclosure over the same box, is that of
+/// `rows`: where constraints cut most of the factors' box away, squares and products would grow
+/// from step to step until rounding errors are as large as the set. `outward`: with the products of
+/// constraints, each with a generator for its rounding. Without, they are left out: constraints of
+/// nominal sets hold up to rounding errors, which their products, nearly dependent, do not keep
+/// small, so that true states were lost. Nothing where Z has lines or more generators than
+/// `most_lifted`, or numbers overflow.
 std::optional<LiftedImage> lifted_image(const formulas::BoxEnclosure& function,
                                         const AffineRows& rows, const LineForm& Z, bool outward);
 
