@@ -77,8 +77,9 @@ namespace {
 
 /// Steps of one trajectory that were enclosed.
 int follow(const Model& model, const Json& inputs, const Method& method, std::uint64_t seed,
-           Index steps) {
-  const auto backend = examples::backend(method.backend);
+           Index steps, const char* rounding = "nominal") {
+  const auto backend =
+      examples::registry().make<BackendEntry>(method.backend, Params().set("rounding", rounding));
   NonlinearOptions options = method.options;
   options.budget = {12, 4};
   NonlinearRecursion recursion(model, backend, options);
@@ -124,6 +125,28 @@ TEST_CASE("trajectories stay inside, whatever the method and its budget") {
     }
   }
   CHECK(enclosed > steps / 2 * seeds * 4 * static_cast<int>(methods().size()));
+}
+
+TEST_CASE("a known start and outputs without noise, which are rounded: no state is lost") {
+  Json system = {{"states", {"a", "b"}}, {"disturbances", {"w"}}, {"noises", {"v"}}};
+  system["f"] = {"0.451*a - 0.128*max(atan(b), 0.3) + w", "0.46*b + 0.044*max(0.96*b, sin(a)) - w"};
+  system["g"] = {"a + 0.3*sin(b) + v"};
+  system["V"] = {{"center", {0}}, {"generators", {{0}}}};
+  for (const double radius : {0.0, 0.001}) {
+    system["W"] = {{"center", {0}}, {"generators", {{radius}}}};
+    system["X0"] = {{"center", {0.9261134509825284, 0.4078342392837213}},
+                    {"generators", {{0.0}, {0.0}}}};
+    const auto model = model_of(system);
+    for (const Method& method : methods()) {
+      for (const char* rounding : {"nominal", "outward"}) {
+        CAPTURE(std::string(method.reference));
+        CAPTURE(std::string(rounding));
+        CAPTURE(radius);
+        for (std::uint64_t seed = 1; seed <= 3; ++seed)
+          CHECK(follow(model, Json::parse("[[]]"), method, seed, 40, rounding) == 40);
+      }
+    }
+  }
 }
 
 TEST_CASE("a set whose small budget loses a coordinate is kept to its box") {

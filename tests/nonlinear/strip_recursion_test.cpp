@@ -140,3 +140,31 @@ TEST_CASE("trajectories stay inside the sets of all variants") {
     }
   }
 }
+
+TEST_CASE("a known start without disturbances: sets of all variants start as points") {
+  Json system = {{"states", {"a", "b"}}, {"disturbances", {"w"}}, {"noises", {"v"}}};
+  system["f"] = {"0.451*a - 0.128*atan(b) + w", "0.46*b + 0.044*sin(a) - w"};
+  system["g"] = {"a + 0.3*sin(b) + v"};
+  system["W"] = system["V"] = {{"center", {0}}, {"generators", {{0}}}};
+  system["X0"] = {{"center", {0.926, 0.408}}, {"generators", {{0.0}, {0.0}}}};
+  Model model = model_of(system);
+  model.X0.G.resize(2, 0);
+  for (const auto& [name, variant] : variants) {
+    CAPTURE(std::string(name));
+    StripRecursion recursion(model, variant, 10);
+    Trajectory trajectory(model, 1);
+    recursion.start(model.X0);
+    Sample before;
+    for (Index k = 0; k < 40; ++k) {
+      CAPTURE(k);
+      if (k > 0) {
+        recursion.predict(before);
+        trajectory.advance(before.u, before.k);
+      }
+      before = {k, Vector(0), trajectory.output(Vector(0), k)};
+      REQUIRE(recursion.correct(before));
+      const LineForm set = make_zonotope(recursion.center(), recursion.generators());
+      CHECK(contains(set, trajectory.x()) != Answer::no);
+    }
+  }
+}

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/rounding.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "observers/nonlinear/box_parts.hpp"
@@ -256,8 +257,9 @@ double NonlinearRecursion::target(Index row, const Sample& now) const {
 }
 
 double NonlinearRecursion::room(double error, double value) const {
-  if (backend_->info().rounding != Rounding::nominal) return 0;
-  return error + tolerances::product_noise * std::abs(value);
+  const bool outward = backend_->info().rounding != Rounding::nominal;
+  const double own = outward ? rounding::unit : tolerances::product_noise;
+  return directed::plus(error, directed::times(own, std::abs(value)).upper).upper;
 }
 
 std::vector<Index> NonlinearRecursion::rows_of(const Sample& now) const {

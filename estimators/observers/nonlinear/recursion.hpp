@@ -8,10 +8,10 @@
 //   y_k: B is contracted by g(x, v, u_k, k) = y_k and h(x) = 0 (HC4), X is cut by B where B is
 //     narrower, and then by y_k - g(h) + C h + D h_v - C x ∈ D V ⊕ box(r), with g enclosed as F.
 // X and B hold the state at all times: each is an enclosure, their intersection is the estimate.
-// Rounding: F(h), J, h, r and the shifts are enclosed; operations of the backend as it claims. With
-// nominal sets, samples and states of the plant may be rounded: values of f and g have room for
-// what formulas in plain doubles are off by, and contraction proves that no state is left only
-// where it would with 10⁴ times that room. With outward ones they are taken as exact. Sources:
+// Rounding: F(h), J, h, r and the shifts are enclosed; operations of the backend as it claims.
+// Samples and states of the plant may be rounded: values of f and g have room for what formulas in
+// plain doubles are off by, and contraction proves that no state is left only where it would with
+// 10⁴ times that room. Sources:
 // [Kuhn1998] mean value, [Combastel2005] first order, [Benhamou1999] contraction.
 #pragma once
 

@@ -236,6 +236,7 @@ Vector StripRecursion::gain(const Eigen::RowVectorXd& C, double sigma) const {
 }
 
 void StripRecursion::replace_column(double y, const Eigen::RowVectorXd& C, double sigma) {
+  if (G_.cols() == 0) return;  // a point
   const Eigen::RowVectorXd spread = C * G_;
   const double least = 1e-6 * spread.cwiseAbs().maxCoeff();
   const auto with = [&](Index j) {
