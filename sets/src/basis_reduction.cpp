@@ -25,7 +25,9 @@ namespace {
 /// T⁻¹V. Replacing T and v_j by T (I + diag|r_j|) adds the volume ∏(1 + |r_ij|) - 1 - Σ|r_ij| (in
 /// units of det T); the cheapest column goes first. A flat G has fewer pivots than rows; what the
 /// basis leaves of a removed column in the other rows goes to their slack, one axis-parallel
-/// generator per row. Observers reduce in every step: memory is kept.
+/// generator per row: where elimination computed it, without what is rounding; a column without
+/// entries in the rows of pivots was not computed, and is as wide as it is, however narrow (room
+/// for rounded data is). Observers reduce in every step: memory is kept.
 class BasisReduction {
  public:
   /// Of G the columns that are not zero.
@@ -40,7 +42,7 @@ class BasisReduction {
   }
 
   void exchange(WorkspaceExchange& memory) {
-    memory.swap(G_, scale_, W_, row_, order_, growth_, slack_, sum_, cost_);
+    memory.swap(G_, scale_, W_, row_, order_, growth_, slack_, kept_, sum_, cost_);
   }
 
   Matrix reduce(Index max_generators) {
@@ -83,8 +85,17 @@ class BasisReduction {
   /// Is there more than rounding in a row without a pivot?
   bool has_residual(Index i) const {
     for (Index k = rank_; k < G_.cols(); ++k) {
-      if (std::abs(W_(i, at(order_, k))) > tolerances::product_noise) return true;
+      const double size = std::abs(W_(i, at(order_, k)));
+      if (size > tolerances::product_noise || (size > 0 && !is_computed(at(order_, k))))
+        return true;
     }
+    return false;
+  }
+
+  /// Has elimination changed the column?
+  bool is_computed(Index column) const {
+    for (Index p = 0; p < rank_; ++p)
+      if (W_(at(row_, p), column) != 0) return true;
     return false;
   }
 
@@ -133,6 +144,7 @@ class BasisReduction {
   Index absorb_cheapest(Index most) {
     growth_ = Vector::Ones(rank_);
     slack_ = Vector::Zero(G_.rows() - rank_);
+    kept_ = slack_;
     Index last = G_.cols();  // places rank_ … last-1 are left in V
     while (last > most) {
       const Index cheapest = cheapest_place(last);
@@ -167,8 +179,9 @@ class BasisReduction {
 
   void absorb(Index column) {
     for (Index i = 0; i < rank_; ++i) growth_[i] += std::abs(W_(at(row_, i), column));
+    const bool is_kept = slack_.size() > 0 && !is_computed(column);
     for (Index i = 0; i < slack_.size(); ++i)
-      slack_[i] += std::abs(W_(at(row_, rank_ + i), column));
+      (is_kept ? kept_ : slack_)[i] += std::abs(W_(at(row_, rank_ + i), column));
   }
 
   Matrix assemble(Index last) const {
@@ -178,9 +191,11 @@ class BasisReduction {
       H.col(k) = (k < rank_ ? growth_[k] : 1.0) * G_.col(at(order_, k));
     Index count = last;
     for (Index i = 0; i < slack_.size(); ++i) {
-      if (!(slack_[i] > tolerances::product_noise * static_cast<double>(g - last))) continue;
+      const bool is_noise = slack_[i] <= tolerances::product_noise * static_cast<double>(g - last);
+      const double slack = (is_noise ? 0.0 : slack_[i]) + kept_[i];
+      if (!(slack > 0)) continue;
       const Index place = at(row_, rank_ + i);
-      H(place, count++) = slack_[i] / scale_[place];
+      H(place, count++) = slack / scale_[place];
     }
     H.conservativeResize(Eigen::NoChange, count);
     return H;
@@ -191,8 +206,8 @@ class BasisReduction {
   Rows W_;
   Numbers row_, order_;  ///< W's rows and columns in the order of their pivots
   Index rank_ = 0;
-  Vector growth_, slack_;
-  Vector sum_, cost_;  ///< per column: the largest entry, then a row's part of the costs
+  Vector growth_, slack_, kept_;  ///< slack of columns that were computed, and of the others
+  Vector sum_, cost_;             ///< per column: the largest entry, then a row's part of the costs
 };
 
 }  // namespace

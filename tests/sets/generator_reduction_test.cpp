@@ -145,6 +145,23 @@ TEST_CASE("flat sets stay flat") {
   CHECK((K.transpose() * d).lpNorm<1>() < 1e-10);
 }
 
+TEST_CASE("room of a last digit in a row of a flat set is kept") {
+  sets::Random random(4);
+  const Matrix base{{1, 0}, {2, 1}, {-1, 3}, {1, 3}};
+  Matrix G = Matrix::Zero(4, 14);
+  for (Index j = 0; j < 12; ++j)
+    G.col(j) = base * Vector{{random.between(-1, 1), random.between(-1, 1)}};
+  G(3, 12) = 3e-16;
+  G(3, 13) = 8e-16;
+  const Matrix H = reduce_generators(G, 6, GeneratorReduction::yang_scott);
+  CHECK(H.cols() <= 6);
+  double own = 0;
+  for (Index j = 0; j < H.cols(); ++j)
+    if (H.col(j).head(3).isZero(0)) own += std::abs(H(3, j));
+  CHECK(own >= 1.1e-15);
+  CHECK(own < 1e-12);
+}
+
 TEST_CASE("a reduction encloses and keeps its budget") {
   CHECK(rc::check([] {
     const Index n = arbitrary_dim();
