@@ -59,6 +59,17 @@ TEST_CASE("a pendulum by formulas: the truth stays inside, and verification find
   }
 }
 
+TEST_CASE("states that explain outputs of little noise are found by aiming at them") {
+  Json study = pendulum();
+  study["system"]["V"] = Json::parse(R"({"type": "box", "lower": [-1e-6], "upper": [1e-6]})");
+  const Run run(study);
+  CAPTURE(run.outcome.out);
+  REQUIRE(run.outcome.code == 0);
+  const test::Outcome verified = run("verify out");
+  CAPTURE(verified.out);
+  CHECK(verified.code == 0);
+}
+
 TEST_CASE("observers by strips: the truth stays inside, and verification finds nothing") {
   Json study = pendulum();
   study["pipelines"] = Json::array();
