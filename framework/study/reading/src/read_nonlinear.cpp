@@ -7,6 +7,7 @@
 
 #include "cordon/formulas/parse.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
+#include "formula_parameters.hpp"
 #include "nonlinear_keys.hpp"
 #include "study/reading/read_sets.hpp"
 
@@ -22,21 +23,21 @@ constexpr const char* box_form =
     "\"upper\": [...]}";
 
 /// What a name stands for.
-enum class Role { state, input, disturbance, noise, parameter };
-struct RoleWords {
+enum class Symbol { state, input, disturbance, noise, parameter };
+struct SymbolWords {
   const char* key;   ///< of the list in the system
   const char* noun;  ///< for people
 };
-constexpr std::array<RoleWords, 5> words{{{"states", "a state"},
-                                          {"inputs", "an input"},
-                                          {"disturbances", "a disturbance"},
-                                          {"noises", "a noise"},
-                                          {"parameters", "a parameter"}}};
+constexpr std::array<SymbolWords, 5> words{{{"states", "a state"},
+                                            {"inputs", "an input"},
+                                            {"disturbances", "a disturbance"},
+                                            {"noises", "a noise"},
+                                            {"parameters", "a parameter"}}};
 
 /// The formulas of one key, and who may stand in them.
 struct Section {
   const char* key;
-  std::vector<Role> variables;  ///< in the order of the function's
+  std::vector<Symbol> variables;  ///< in the order of the function's
   bool uses_time;
   const char* form;
 };
@@ -51,52 +52,60 @@ class NonlinearReader {
  private:
   void take(PlantSystem plant);
   void read_written();
-  void read_variables(Role role);
-  void take_name(const Cursor& at, const std::string& name, Role role);
-  void read_parameters();
+  void read_variables(Symbol role);
+  void take_name(const Cursor& at, const std::string& name, Symbol role);
+  void take_ranges();
   void read_formulas(const char* key, std::size_t least, NameList& out);
   void compile();
   std::shared_ptr<const formulas::Function> function(std::vector<const Section*> sections,
-                                                     Role noise);
+                                                     Symbol noise);
   void parse(const Section& section, formulas::Graph& graph, std::vector<int>& nodes);
   formulas::Vocabulary vocabulary(const Section& section, formulas::Graph& graph) const;
   NameList variables_of(const Section& section) const;
   void report(const Cursor& at, const std::vector<formulas::FormulaError>& errors) const;
-  void warn_of_unused(const formulas::Function& function, Role role);
+  void warn_of_unused(const formulas::Function& function, Symbol role);
   void read_sets();
-  void read_set_of(const char* key, Role role, LineForm& out);
+  void read_set_of(const char* key, Symbol role, LineForm& out);
+  void extend(const char* key, Symbol role, LineForm& set);
   void read_admissible();
   void name_labels();
-  NameList& names(Role role) { return written_.names[static_cast<std::size_t>(role)]; }
-  const NameList& names(Role role) const { return written_.names[static_cast<std::size_t>(role)]; }
-  Index count(Role role) const { return static_cast<Index>(names(role).size()); }
+  NameList& names(Symbol role) { return written_.names[static_cast<std::size_t>(role)]; }
+  const NameList& names(Symbol role) const {
+    return written_.names[static_cast<std::size_t>(role)];
+  }
+  using Ranges = std::vector<ParameterRange>;
+  Ranges& ranges(Symbol role) { return ranges_[static_cast<std::size_t>(role)]; }
+  const Ranges& ranges(Symbol role) const { return ranges_[static_cast<std::size_t>(role)]; }
+  Index written(Symbol role) const { return static_cast<Index>(names(role).size()); }
+  Index count(Symbol role) const { return written(role) + static_cast<Index>(ranges(role).size()); }
 
   const Cursor& system_;
   std::vector<std::string>& warnings_;
   std::size_t before_;
   SystemPart part_;
   WrittenFormulas written_;
-  std::map<std::string, Role> known_;
+  std::map<std::string, Symbol> known_;
+  std::array<Ranges, 4> ranges_;  ///< of parameters that stand after the names of a list
   NonlinearModel model_;
 };
 
 const Section& section_f() {
   static const Section section{"f",
-                               {Role::state, Role::disturbance, Role::input},
+                               {Symbol::state, Symbol::disturbance, Symbol::input},
                                true,
                                "one formula per state: x at the next time"};
   return section;
 }
 const Section& section_g() {
   static const Section section{"g",
-                               {Role::state, Role::noise, Role::input},
+                               {Symbol::state, Symbol::noise, Symbol::input},
                                true,
                                "one formula per output, [\"x1 + v1\"] for example"};
   return section;
 }
 const Section& section_h() {
   static const Section section{
-      "invariants", {Role::state}, false, "formulas that are 0 for the true state at all times"};
+      "invariants", {Symbol::state}, false, "formulas that are 0 for the true state at all times"};
   return section;
 }
 
@@ -104,17 +113,17 @@ const Section& section_h() {
 void NonlinearReader::take(PlantSystem plant) {
   written_.plant = std::move(plant.spec);
   if (!plant.f) return;
-  names(Role::state).resize(as_size(plant.states()));
-  names(Role::input).resize(as_size(plant.inputs));
-  names(Role::disturbance).resize(as_size(plant.states()));
-  names(Role::noise).resize(as_size(plant.outputs()));
+  names(Symbol::state).resize(as_size(plant.states()));
+  names(Symbol::input).resize(as_size(plant.inputs));
+  names(Symbol::disturbance).resize(as_size(plant.states()));
+  names(Symbol::noise).resize(as_size(plant.outputs()));
   part_.sizes = {plant.states(), plant.inputs, plant.outputs(), 0};
   model_.inputs = plant.inputs;
   model_.f = std::move(plant.f);
   model_.g = std::move(plant.g);
 }
 
-void NonlinearReader::take_name(const Cursor& at, const std::string& name, Role role) {
+void NonlinearReader::take_name(const Cursor& at, const std::string& name, Symbol role) {
   if (const std::string why = formulas::why_no_name(name); !why.empty()) {
     at.error(in_quotes(name) + " is no name for " + words[static_cast<std::size_t>(role)].noun +
                  ": " + why,
@@ -129,16 +138,16 @@ void NonlinearReader::take_name(const Cursor& at, const std::string& name, Role 
   }
 }
 
-void NonlinearReader::read_variables(Role role) {
-  const RoleWords& word = words[static_cast<std::size_t>(role)];
-  const auto at = role == Role::state
+void NonlinearReader::read_variables(Symbol role) {
+  const SymbolWords& word = words[static_cast<std::size_t>(role)];
+  const auto at = role == Symbol::state
                       ? system_.need("states", "the names of the states: [\"x1\", \"x2\"]")
                       : system_.find(word.key);
   if (!at || !at->expect(Kind::array, "a list of names: [\"x1\", \"x2\"]")) return;
   if (at->size() > static_cast<std::size_t>(max_dimension) ||
-      (role == Role::state && at->size() == 0)) {
+      (role == Symbol::state && at->size() == 0)) {
     at->error("has " + counted(static_cast<Index>(at->size()), "name") + ", must have " +
-              (role == Role::state ? "1" : "0") + " to " + std::to_string(max_dimension));
+              (role == Symbol::state ? "1" : "0") + " to " + std::to_string(max_dimension));
     return;
   }
   for (std::size_t i = 0; i < at->size(); ++i) {
@@ -148,16 +157,14 @@ void NonlinearReader::read_variables(Role role) {
   }
 }
 
-void NonlinearReader::read_parameters() {
-  const auto at = system_.find("parameters");
-  if (!at || !at->expect(Kind::object, "numbers with names: {\"dt\": 0.1}")) return;
-  for (std::size_t i = 0; i < at->value().keys().size(); ++i) {
-    const std::string& name = at->value().keys()[i];
-    const Cursor item = *at->find(name);
-    take_name(item, name, Role::parameter);
-    const auto number = read_number(item);
-    written_.parameters.emplace_back(name, number.value_or(0));
-  }
+/// Parameters of which bounds are known: one that keeps its value is a state that does, one that
+/// varies a disturbance of f, and a noise of g.
+void NonlinearReader::take_ranges() {
+  std::vector<std::string> shown = written_.g;
+  shown.insert(shown.end(), written_.invariants.begin(), written_.invariants.end());
+  ranges(Symbol::state) = constant_ranges(written_);
+  ranges(Symbol::disturbance) = varying_ranges(written_, written_.f);
+  ranges(Symbol::noise) = varying_ranges(written_, shown);
 }
 
 void NonlinearReader::read_formulas(const char* key, std::size_t least, NameList& out) {
@@ -175,8 +182,10 @@ void NonlinearReader::read_formulas(const char* key, std::size_t least, NameList
 
 NameList NonlinearReader::variables_of(const Section& section) const {
   NameList all;
-  for (const Role role : section.variables)
+  for (const Symbol role : section.variables) {
     all.insert(all.end(), names(role).begin(), names(role).end());
+    for (const ParameterRange& range : ranges(role)) all.push_back(range.name);
+  }
   all.push_back("k");
   return all;
 }
@@ -192,7 +201,7 @@ formulas::Vocabulary NonlinearReader::vocabulary(const Section& section,
   for (const auto& [name, value] : written_.parameters)
     made.known.emplace(name, graph.constant(value));
   for (const auto& [name, role] : known_) {
-    const bool allowed = role == Role::parameter ||
+    const bool allowed = role == Symbol::parameter ||
                          std::ranges::find(section.variables, role) != section.variables.end();
     if (allowed) continue;
     made.known.erase(name);
@@ -234,31 +243,34 @@ void NonlinearReader::parse(const Section& section, formulas::Graph& graph,
     }
     report(item, errors);
   }
+  if (section.key != section_f().key) return;
+  for (Index i = written(Symbol::state); i < count(Symbol::state); ++i)
+    nodes.push_back(graph.variable(i).node());
 }
 
 std::shared_ptr<const formulas::Function> NonlinearReader::function(
-    std::vector<const Section*> sections, Role noise) {
+    std::vector<const Section*> sections, Symbol noise) {
   const auto graph = std::make_shared<formulas::Graph>(variables_of(*sections.front()));
   std::vector<int> nodes;
   for (const Section* section : sections) parse(*section, *graph, nodes);
   if (system_.problems().met() != before_) return nullptr;
   try {
     return std::make_shared<const formulas::Function>(graph, nodes,
-                                                      count(Role::state) + count(noise), 2);
+                                                      count(Symbol::state) + count(noise), 2);
   } catch (const Error& error) {
     system_.find(sections.front()->key)->error(error.what(), "use simpler formulas");
     return nullptr;
   }
 }
 
-void NonlinearReader::warn_of_unused(const formulas::Function& function, Role role) {
-  for (Index i = 0; i < count(role); ++i) {
-    const Index variable = count(Role::state) + i;
+void NonlinearReader::warn_of_unused(const formulas::Function& function, Symbol role) {
+  for (Index i = 0; i < written(role); ++i) {
+    const Index variable = count(Symbol::state) + i;
     bool used = false;
     for (Index row = 0; row < function.rows(); ++row)
       used = used || function.depends_on(row, variable);
     if (used) continue;
-    const RoleWords& word = words[static_cast<std::size_t>(role)];
+    const SymbolWords& word = words[static_cast<std::size_t>(role)];
     warnings_.push_back(child(child(system_.pointer(), word.key), static_cast<std::size_t>(i)) +
                         ": " + in_quotes(names(role)[static_cast<std::size_t>(i)]) +
                         " stands in no formula");
@@ -267,51 +279,61 @@ void NonlinearReader::warn_of_unused(const formulas::Function& function, Role ro
 
 void NonlinearReader::compile() {
   const auto f = system_.find("f");
-  if (f && f->is(Kind::array) && system_.find("states") && f->size() != names(Role::state).size()) {
+  if (f && f->is(Kind::array) && system_.find("states") &&
+      f->size() != names(Symbol::state).size()) {
     f->error("has " + counted(static_cast<Index>(f->size()), "formula") + ", must have " +
-                 std::to_string(count(Role::state)) + ", one per state",
+                 std::to_string(written(Symbol::state)) + ", one per state",
              "");
   }
-  model_.f = function({&section_f()}, Role::disturbance);
-  model_.g = function({&section_g(), &section_h()}, Role::noise);
+  model_.f = function({&section_f()}, Symbol::disturbance);
+  model_.g = function({&section_g(), &section_h()}, Symbol::noise);
   if (!model_.f || !model_.g) return;
   model_.invariants = static_cast<Index>(written_.invariants.size());
-  model_.inputs = count(Role::input);
-  warn_of_unused(*model_.f, Role::disturbance);
-  warn_of_unused(*model_.g, Role::noise);
+  model_.inputs = count(Symbol::input);
+  warn_of_unused(*model_.f, Symbol::disturbance);
+  warn_of_unused(*model_.g, Symbol::noise);
 }
 
-void NonlinearReader::read_set_of(const char* key, Role role, LineForm& out) {
-  const RoleWords& word = words[static_cast<std::size_t>(role)];
-  if (!system_.find(key) && count(role) == 0 && !written_.plant) {
+/// By the parameters that stand after the names of this list.
+void NonlinearReader::extend(const char* key, Symbol role, LineForm& set) {
+  if (ranges(role).empty()) return;
+  LineForm all = cartesian_product(set, box_of(ranges(role)));
+  written_.sets.emplace(key, std::exchange(set, std::move(all)));
+}
+
+void NonlinearReader::read_set_of(const char* key, Symbol role, LineForm& out) {
+  const SymbolWords& word = words[static_cast<std::size_t>(role)];
+  if (!system_.find(key) && written(role) == 0 && !written_.plant) {
     out = make_point(Vector(0));
+    extend(key, role, out);
     return;
   }
   const auto at = system_.need(key, box_form);
   auto X = at ? read_set(*at, warnings_) : std::nullopt;
   if (!X || (written_.plant && !model_.f)) return;
-  if (X->dim() != count(role)) {
+  if (X->dim() != written(role)) {
     at->error("has dimension " + std::to_string(X->dim()) + ", must have " +
-              std::to_string(count(role)) + " like " +
+              std::to_string(written(role)) + " like " +
               (written_.plant ? "the " + std::string(word.key) + " of " : "") +
               child(system_.pointer(), written_.plant ? "plant" : word.key));
     return;
   }
   out = std::move(*X);
+  extend(key, role, out);
 }
 
 void NonlinearReader::read_sets() {
-  read_set_of("X0", Role::state, part_.model.X0);
-  read_set_of("W", Role::disturbance, part_.model.W);
-  read_set_of("V", Role::noise, part_.model.V);
-  part_.model.U = make_space(count(Role::input));
-  if (system_.find("U")) read_set_of("U", Role::input, part_.model.U);
+  read_set_of("X0", Symbol::state, part_.model.X0);
+  read_set_of("W", Symbol::disturbance, part_.model.W);
+  read_set_of("V", Symbol::noise, part_.model.V);
+  part_.model.U = make_space(count(Symbol::input));
+  if (system_.find("U")) read_set_of("U", Symbol::input, part_.model.U);
 }
 
 void NonlinearReader::read_admissible() {
   if (system_.find("admissible")) {
     LineForm set;
-    read_set_of("admissible", Role::state, set);
+    read_set_of("admissible", Symbol::state, set);
     model_.admissible = std::move(set);
   }
   if (const auto at = system_.find("domain")) {
@@ -322,27 +344,33 @@ void NonlinearReader::read_admissible() {
 
 /// Names of the formulas, where the study does not call them otherwise.
 void NonlinearReader::name_labels() {
-  const auto name = [](Labels::Names& labels, const NameList& names) {
-    if (labels.empty()) labels.assign(names.begin(), names.end());
+  const auto name = [this](Labels::Names& labels, Symbol role) {
+    if (!labels.empty()) return;
+    labels.assign(names(role).begin(), names(role).end());
+    for (const ParameterRange& range : ranges(role)) labels.push_back(range.name);
   };
-  name(part_.labels.states, names(Role::state));
-  name(part_.labels.inputs, names(Role::input));
-  name(part_.labels.disturbances, names(Role::disturbance));
-  name(part_.labels.noises, names(Role::noise));
+  name(part_.labels.states, Symbol::state);
+  name(part_.labels.inputs, Symbol::input);
+  name(part_.labels.disturbances, Symbol::disturbance);
+  name(part_.labels.noises, Symbol::noise);
 }
 
 /// What is written as formulas.
 void NonlinearReader::read_written() {
-  for (const Role role : {Role::state, Role::input, Role::disturbance, Role::noise})
+  for (const Symbol role : {Symbol::state, Symbol::input, Symbol::disturbance, Symbol::noise})
     read_variables(role);
-  read_parameters();
+  read_parameters(
+      system_,
+      [this](const Cursor& at, const std::string& name) { take_name(at, name, Symbol::parameter); },
+      written_);
   read_formulas("f", 1, written_.f);
   read_formulas("g", 1, written_.g);
   read_formulas("invariants", 0, written_.invariants);
+  take_ranges();
   compile();
   Sizes& sizes = part_.sizes;
-  if (system_.find("states")) sizes.states = count(Role::state);
-  sizes.inputs = count(Role::input);
+  if (system_.find("states")) sizes.states = count(Symbol::state);
+  sizes.inputs = count(Symbol::input);
   if (!written_.g.empty()) sizes.outputs = static_cast<Index>(written_.g.size());
   sizes.faults = 0;
 }
@@ -355,9 +383,9 @@ SystemPart NonlinearReader::read(const PlantReader& read_plant) {
   read_admissible();
   const Sizes& sizes = part_.sizes;
   const bool known = !plant || model_.f;
-  const auto of = [&](Role role) { return known ? std::optional(count(role)) : std::nullopt; };
+  const auto of = [&](Symbol role) { return known ? std::optional(count(role)) : std::nullopt; };
   part_.labels = read_labels(system_, {sizes.states, sizes.inputs, sizes.outputs,
-                                       of(Role::disturbance), of(Role::noise), 0});
+                                       of(Symbol::disturbance), of(Symbol::noise), 0});
   if (!plant) name_labels();
   if (const auto at = system_.find("nominal"))
     part_.nominal = read_line(*at, max_name).value_or(part_.nominal);

@@ -122,6 +122,11 @@ void add_formulas(Json& system, const WrittenFormulas& written) {
     if (!written.names[i].empty()) system[lists[i]] = written.names[i];
   }
   for (const auto& [name, value] : written.parameters) system["parameters"][name] = value;
+  for (const ParameterRange& range : written.ranges) {
+    Json& parameter = system["parameters"][range.name];
+    parameter = {{"lower", range.lower}, {"upper", range.upper}};
+    if (range.is_varying) parameter["varying"] = true;
+  }
   system["f"] = written.f;
   system["g"] = written.g;
   if (!written.invariants.empty()) system["invariants"] = written.invariants;
@@ -136,11 +141,15 @@ Json to_json(const Model& model, const WrittenFormulas& written, const Registry&
     add_formulas(system, written);
   }
   const NonlinearModel& formulas = *model.nonlinear;
-  if (formulas.admissible) system["admissible"] = to_json(*formulas.admissible);
+  const auto set = [&](const char* key, const LineForm& of_model) {
+    const auto as_written = written.sets.find(key);
+    system[key] = to_json(as_written == written.sets.end() ? of_model : as_written->second);
+  };
+  if (formulas.admissible) set("admissible", *formulas.admissible);
   if (formulas.undefined == formulas::Undefined::assumed) system["domain"] = "assumed";
-  system["X0"] = to_json(model.X0);
-  system["W"] = to_json(model.W);
-  system["V"] = to_json(model.V);
+  set("X0", model.X0);
+  set("W", model.W);
+  set("V", model.V);
   return system;
 }
 

@@ -152,7 +152,13 @@ Json systems(const Json& more) {
 std::array<Json, 2> nonlinear_systems(const Json& names, const Json& sampling_time) {
   const Json set = reference("set"), formulas = list_of(text(formulas::longest_formula)),
              identifiers = list_of(text(60));
-  const Json parameters{{"type", "object"}, {"additionalProperties", {{"type", "number"}}}};
+  const Json number{{"type", "number"}};
+  const Json range = object(
+      {{"lower", number},
+       {"upper", number},
+       {"varying", described({{"type", "boolean"}}, "from step to step; else it keeps its value")}},
+      {"lower", "upper"});
+  const Json parameters{{"type", "object"}, {"additionalProperties", {{"anyOf", {number, range}}}}};
   const Json common{
       {"admissible", described(set, "holds the state at all times, as is assumed")},
       {"domain", described(one_of({"refused", "assumed"}),
@@ -169,7 +175,7 @@ std::array<Json, 2> nonlinear_systems(const Json& names, const Json& sampling_ti
                {"inputs", identifiers},
                {"disturbances", identifiers},
                {"noises", identifiers},
-               {"parameters", described(parameters, "numbers with names")},
+               {"parameters", described(parameters, "numbers with names, or their bounds")},
                {"f", described(formulas, "the next state, one formula per state")},
                {"g", described(formulas, "the outputs")},
                {"invariants", described(formulas, "are 0 for the true state at all times")}};

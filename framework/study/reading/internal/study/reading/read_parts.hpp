@@ -4,9 +4,11 @@
 // are known.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -61,12 +63,21 @@ struct WrittenMode {
 /// ones.
 Model model_of(const WrittenMode& mode, const Model& nominal);
 
+/// A parameter of which bounds are known.
+struct ParameterRange {
+  std::string name;
+  double lower, upper;
+  bool is_varying;  ///< from step to step; else it keeps its value
+};
+
 /// A system of formulas as it is written.
 struct WrittenFormulas {
   std::optional<ComponentSpec> plant;  ///< whose formulas they are; nothing of it is written then
   std::array<std::vector<std::string>, 4> names;  ///< of states, inputs, disturbances and noises
   std::vector<std::pair<std::string, double>> parameters;
+  std::vector<ParameterRange> ranges;
   std::vector<std::string> f, g, invariants;
+  std::map<std::string, LineForm> sets;  ///< X0, W, … where those of the model hold parameters, too
 };
 
 struct ContinuousPart;
@@ -84,7 +95,14 @@ struct SystemPart {
   std::optional<WrittenFormulas> formulas;  ///< of a nonlinear system
 
   // What tells how many there are, for messages.
-  std::string states_at() const { return place("/system/states", "the rows of /system/A"); }
+  std::string states_at() const {
+    const bool has_more = formulas && std::ranges::any_of(formulas->ranges, [](const auto& range) {
+                            return !range.is_varying;
+                          });
+    return place(has_more ? "/system/states, and after them the constant parameters with bounds"
+                          : "/system/states",
+                 "the rows of /system/A");
+  }
   std::string inputs_at() const { return place("/system/inputs", "the columns of /system/B"); }
   std::string outputs_at() const { return place("/system/g", "the rows of /system/C"); }
   std::string place(const char* of_formulas, const char* of_matrices) const {
