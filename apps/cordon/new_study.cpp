@@ -2,20 +2,15 @@
 #include "new_study.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
-#include <cstdio>
-#include <cstring>
-#include <fcntl.h>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "new_file.hpp"
 #include "study_templates.hpp"
 
 namespace cordon::apps {
@@ -51,33 +46,6 @@ std::string content_of(const std::string& kind, const std::string& title) {
   return text.replace(text.find(placeholder), placeholder.size(), in_json);
 }
 
-[[noreturn]] void fail(const fs::path& file, int reason) {
-  if (reason == EEXIST)
-    throw Error(Errc::invalid, fmt::format("{} exists already; give another name", file.string()));
-  throw Error(Errc::io, fmt::format("cannot write {}: {}", file.string(), std::strerror(reason)));
-}
-
-/// Whole or not at all, and never over a file that is there.
-void write_new(const fs::path& file, const std::string& content) {
-  if (std::error_code error; fs::exists(fs::symlink_status(file, error))) fail(file, EEXIST);
-  const fs::path partial =
-      file.parent_path() / fmt::format(".partial-{}-{}", getpid(), file.filename().string());
-  errno = 0;
-  std::ofstream stream(partial, std::ios::binary);
-  stream << content;
-  stream.close();
-  int reason = stream ? 0 : std::max(errno, 1);
-  if (reason == 0 &&
-      renameat2(AT_FDCWD, partial.c_str(), AT_FDCWD, file.c_str(), RENAME_NOREPLACE) != 0)
-    reason = errno;
-  if (reason == EINVAL || reason == ENOSYS)
-    reason = std::rename(partial.c_str(), file.c_str()) == 0 ? 0 : errno;
-  if (reason == 0) return;
-  std::error_code ignored;
-  fs::remove(partial, ignored);
-  fail(file, reason);
-}
-
 Exit new_study(const fs::path& wanted, const std::string& kind) {
   std::signal(SIGXFSZ,
               SIG_IGN);  // a limit of file size is an error of write, not the end of the process
@@ -88,7 +56,7 @@ Exit new_study(const fs::path& wanted, const std::string& kind) {
     throw Error(Errc::invalid,
                 fmt::format("{} is no directory; create it first", wanted.parent_path().string()));
   }
-  write_new(file, content_of(kind, title));
+  write_new_file(file, content_of(kind, title));
   note(fmt::format("Wrote {}\nNext:", file.string()));
   const std::string shown = quoted(as_operand(file));
   print(fmt::format("cordon validate {}\ncordon run {} --out {}\n", shown, shown,

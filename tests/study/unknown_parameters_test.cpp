@@ -74,8 +74,7 @@ TEST_CASE("a parameter that varies is a disturbance of f and a noise of g") {
   CHECK(names["states"] == Json({"level"}));
   CHECK(names["disturbances"] == Json({"w", "leak"}));
   CHECK(names["noises"] == Json({"v", "gain"}));
-  for (std::size_t i = 0; i < 3; ++i)
-    CHECK(run.pipeline(i)["summary"]["outside_from"].is_null());
+  for (std::size_t i = 0; i < 3; ++i) CHECK(run.pipeline(i)["summary"]["outside_from"].is_null());
 }
 
 TEST_CASE("studies with bounds of parameters say the same once they are resolved") {
@@ -92,8 +91,7 @@ TEST_CASE("studies with bounds of parameters say the same once they are resolved
   const Run again(run.results()["study"]);
   CAPTURE(again.outcome.out);
   REQUIRE(again.outcome.code == 0);
-  for (std::size_t i = 0; i < 3; ++i)
-    CHECK(run.pipeline(i)["steps"] == again.pipeline(i)["steps"]);
+  for (std::size_t i = 0; i < 3; ++i) CHECK(run.pipeline(i)["steps"] == again.pipeline(i)["steps"]);
 }
 
 TEST_CASE("mistakes in bounds of parameters are told") {

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/identify.hpp"
+
+#include <charconv>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "cordon/study/data.hpp"
+#include "identified_study.hpp"
+#include "json_text.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Status = BoundFactors::Status;
+
+constexpr std::size_t most_samples = 20'000;
+constexpr double agrees = 1 + 1e-6;  ///< a factor up to this counts as 1: what the solver rounds
+constexpr double shares_of_V[] = {0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 2};
+
+struct IdentifyArguments {
+  std::filesystem::path study, write;
+  std::string scale = "both", train = "100%";
+  bool trade_off = false, json = false;
+};
+
+const std::vector<std::pair<std::string, Scaled>>& scales() {
+  static const std::vector<std::pair<std::string, Scaled>> all{{"both", Scaled::both},
+                                                               {"W", Scaled::disturbances},
+                                                               {"V", Scaled::noises},
+                                                               {"each", Scaled::each}};
+  return all;
+}
+
+Scaled scale_from(const std::string& name) {
+  for (const auto& [known, scaled] : scales())
+    if (known == name) return scaled;
+  throw Error(Errc::invalid, "--scale takes both, W, V or each, not \"" + name + "\"");
+}
+
+/// "70%" or "70": 0.7.
+double share_from(const std::string& text) {
+  double percent = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, percent);
+  const bool is_number = error == std::errc() && (rest == end || std::string(rest, end) == "%");
+  if (!is_number || !(percent > 0) || percent > 100)
+    throw Error(Errc::invalid,
+                "--train takes a share of the samples, 70% for example, not \"" + text + "\"");
+  return percent / 100;
+}
+
+std::vector<Sample> samples_of(const Study& study) {
+  std::vector<Sample> samples;
+  const auto source = open_data(study);
+  while (auto record = source->next()) {
+    if (samples.size() == most_samples) {
+      throw Error(Errc::invalid, fmt::format("there are more than {} samples; identify bounds from "
+                                             "a part of them",
+                                             most_samples));
+    }
+    samples.push_back(std::move(record->sample));
+  }
+  return samples;
+}
+
+Model scaled_model(Model model, const Vector& disturbances, const Vector& noises) {
+  model.W = with_factors(model.W, disturbances);
+  model.V = with_factors(model.V, noises);
+  return model;
+}
+
+/// The smallest factors of W for some of V.
+struct TradeOff {
+  double of_V;
+  BoundFactors W;
+};
+
+struct Identified {
+  std::size_t samples, trained;
+  BoundFactors factors;
+  /// The factor by which the bounds found would have to grow to explain all samples, if there were
+  /// others.
+  std::optional<BoundFactors> rest;
+  std::vector<TradeOff> trade_off;
+};
+
+Identified identified(const Study& study, const IdentifyArguments& arguments) {
+  const std::vector<Sample> samples = samples_of(study);
+  if (samples.empty()) throw Error(Errc::invalid, "the data hold no sample");
+  const auto trained = std::max<std::size_t>(
+      1,
+      static_cast<std::size_t>(share_from(arguments.train) * static_cast<double>(samples.size())));
+  const std::span<const Sample> first(samples.data(), trained);
+  const IdentifyOptions options{scale_from(arguments.scale)};
+  Identified result{samples.size(), trained, identify_bounds(study.model, first, options), {}, {}};
+  const BoundFactors& found = result.factors;
+  if (found.status == Status::found && trained < samples.size()) {
+    result.rest = identify_bounds(
+        scaled_model(study.model, found.disturbances * agrees, found.noises * agrees), samples);
+  }
+  for (const double share : shares_of_V) {
+    if (!arguments.trade_off) break;
+    const Model with_V = scaled_model(study.model, Vector::Ones(study.model.W.generators()),
+                                      Vector::Constant(study.model.V.generators(), share));
+    result.trade_off.push_back({share, identify_bounds(with_V, first, {Scaled::disturbances})});
+  }
+  return result;
+}
+
+std::string factor_text(const BoundFactors& factors) {
+  if (factors.status == Status::found) return fmt::format("{:.6g}", factors.cost);
+  return factors.status == Status::none ? "none" : "not found";
+}
+
+std::string bounds_text(const Study& study, const BoundFactors& found, const Paint& paint) {
+  std::vector<std::vector<std::string>> rows{{"BOUND", "GIVEN", "EXPLAINS THE DATA"}};
+  const auto add = [&](const char* letter, const Labels::Names& names, const LineForm& set,
+                       const Vector& factors) {
+    const LineForm scaled = with_factors(set, factors);
+    const Vector given = set.G.cwiseAbs().rowwise().sum(),
+                 needed = scaled.G.cwiseAbs().rowwise().sum();
+    for (Index i = 0; i < set.dim(); ++i) {
+      rows.push_back({label_of(names, letter, i),
+                      fmt::format("{:.6g} ± {:.6g}", set.c[i], given[i]),
+                      fmt::format("{:.6g} ± {:.6g}", set.c[i], needed[i])});
+    }
+  };
+  add("w", study.labels.disturbances, study.model.W, found.disturbances);
+  add("v", study.labels.noises, study.model.V, found.noises);
+  return table(rows, paint);
+}
+
+std::string proof_text(const BoundFactors& found) {
+  if (found.first < 0) return found.proven >= found.cost ? "" : "   nothing is proven";
+  return fmt::format("   proven: not below {:.6g}, by the outputs from k = {} to {}", found.proven,
+                     found.first, found.last);
+}
+
+std::string rest_text(const Identified& result) {
+  if (!result.rest) return "";
+  if (result.rest->status != Status::found)
+    return "Whether they explain the rest of the samples was not found.\n";
+  if (result.rest->cost <= agrees) return "They explain the rest of the samples, too.\n";
+  return fmt::format(
+      "They do not explain all samples. For these they would have to grow:\n"
+      "Factor  {:.6g}{}\n",
+      result.rest->cost, proof_text(*result.rest));
+}
+
+std::string report_text(const Study& study, const Identified& result,
+                        const IdentifyArguments& arguments) {
+  const Paint paint(stdout);
+  const BoundFactors& found = result.factors;
+  std::string text = study.title.empty() ? "" : paint.bold(study.title) + "\n";
+  text += fmt::format("{} of {}\n\n", count(static_cast<std::int64_t>(result.trained), "sample"),
+                      result.samples);
+  if (found.status == Status::none) {
+    text +=
+        "No factors explain the data: what is not scaled contradicts them, as the solver says.\n";
+  } else if (found.status == Status::failed) {
+    text += "The solver gave no answer.\n";
+  } else {
+    text += fmt::format("{}  {:.6g}{}\n\n", arguments.scale == "each" ? "Sum of factors" : "Factor",
+                        found.cost, proof_text(found));
+    text += bounds_text(study, found, paint);
+    text += rest_text(result);
+  }
+  if (result.trade_off.empty()) return text;
+  std::vector<std::vector<std::string>> rows{{"FACTOR OF V", "OF W", "PROVEN"}};
+  for (const auto& [of_V, W] : result.trade_off) {
+    rows.push_back({fmt::format("{:g}", of_V), factor_text(W),
+                    W.status == Status::found ? fmt::format("{:.6g}", W.proven) : ""});
+  }
+  return text + "\nTrade-off\n" + table(rows, paint);
+}
+
+Json to_json(const BoundFactors& factors) {
+  if (factors.status != Status::found)
+    return {{"status", factors.status == Status::none ? "none" : "failed"}};
+  return {{"status", "found"},
+          {"cost", factors.cost},
+          {"proven", factors.proven},
+          {"first", factors.first},
+          {"last", factors.last},
+          {"W", std::vector<double>(factors.disturbances.begin(), factors.disturbances.end())},
+          {"V", std::vector<double>(factors.noises.begin(), factors.noises.end())}};
+}
+
+std::string report_json(const Identified& result, const IdentifyArguments& arguments) {
+  Json report{{"scale", arguments.scale},
+              {"samples", result.samples},
+              {"trained", result.trained},
+              {"factors", to_json(result.factors)},
+              {"all_samples", result.rest ? to_json(*result.rest) : Json(nullptr)}};
+  for (const auto& [of_V, W] : result.trade_off)
+    report["trade_off"].push_back({{"V", of_V}, {"W", to_json(W)}});
+  return json_text(report);
+}
+
+Exit identify(const Program& program, const IdentifyArguments& arguments) {
+  Registry registry;
+  registry.load({program.plugins});
+  const Study study =
+      read_study(arguments.study, registry, default_search_path(), program.study_plugins());
+  for (const std::string& warning : study.warnings) warn(warning);
+  if (const std::string why = why_not_identified(study.model); !why.empty()) {
+    throw Error(Errc::invalid, "bounds of this study are not identified: " + why);
+  }
+  if (!study.modes.empty())
+    warn("data are taken for those of \"" + study.nominal +
+         "\": where a fault is in them, its bounds are no bounds of disturbances");
+  if (!arguments.write.empty()) require_writable(study);
+  const Identified result = identified(study, arguments);
+  print(arguments.json ? report_json(result, arguments) : report_text(study, result, arguments));
+  if (result.factors.status != Status::found) return Exit::unanswered;
+  if (!arguments.write.empty()) {
+    write_identified(
+        study, result.factors,
+        fmt::format("W and V explain {} of {} samples", result.trained, result.samples),
+        arguments.write);
+    note(fmt::format("Wrote {}", arguments.write.string()));
+  }
+  return Exit::done;
+}
+
+}  // namespace
+
+CORDON_COMMAND(identify) {
+  CLI::App* command = app.add_subcommand(
+      "identify", "Find the smallest bounds of disturbances and noise that explain data");
+  const auto arguments = std::make_shared<IdentifyArguments>();
+  command->add_option("STUDY", arguments->study, "Study file (JSON)")->required()->option_text(" ");
+  command
+      ->add_option("--scale", arguments->scale,
+                   "What is scaled: W and V by one factor (both), W, V, or each generator of both, "
+                   "their sum being least")
+      ->option_text("both|W|V|each");
+  command
+      ->add_option("--train", arguments->train,
+                   "Take the bounds from this first part of the samples, and try them on all")
+      ->option_text("70%");
+  command->add_flag("--trade-off", arguments->trade_off,
+                    "The least factor of W for several factors of V, too");
+  command
+      ->add_option("--write", arguments->write, "Write the study with these bounds to a new file")
+      ->option_text("FILE");
+  command->add_flag("--json", arguments->json, "Print JSON for programs instead of tables");
+  command->footer(
+      "Generators of W and V are scaled around their centres; the system, X0 and what is not "
+      "scaled "
+      "are taken as they\nare. \"proven\" is a bound in rational arithmetic: no smaller factor "
+      "explains the outputs named. The exit code is 5\nwhere no factor was found.");
+  command->callback([&program, arguments] { program.exit = identify(program, *arguments); });
+}
+
+}  // namespace cordon::apps

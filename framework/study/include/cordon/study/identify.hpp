@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The smallest bounds that explain data.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cordon/interfaces/model.hpp"
+
+namespace cordon {
+
+/// W(s) = c_w + G_w diag(s) [-1,1]^g, V likewise: what is scaled.
+enum class Scaled {
+  both,          ///< one factor for all generators of W and V
+  disturbances,  ///< one factor for W; V stays
+  noises,        ///< one factor for V; W stays
+  each           ///< a factor for each generator of both
+};
+
+/// Factors under which a trajectory explains the samples:
+///   x_0 ∈ X0,  x_{k+1} = A x_k + B u_k + Bw w_k,  y_k = C x_k + D u_k + Dv v_k,
+///   w_k ∈ W(s), v_k ∈ V(s)
+/// at the smallest cost: the factor itself, or Σ s_j where each generator has one.
+struct BoundFactors {
+  enum class Status {
+    found,  ///< and no smaller ones are consistent
+    none,   ///< the solver finds none, however large: what is not scaled does not explain the data
+    failed  ///< the solver gave no answer
+  };
+  Status status = Status::failed;
+  Vector disturbances, noises;  ///< per generator of W and of V; those that are not scaled are 1
+  double cost = 0;
+  /// No factors of smaller cost explain the samples, and so no smaller factor where there is one:
+  /// from multipliers of the outputs, in rational arithmetic. At least 0.
+  double proven = 0;
+  /// The outputs whose multipliers are not 0, which alone require that.
+  Index first = -1, last = -1;
+};
+
+struct IdentifyOptions {
+  Scaled scaled = Scaled::both;
+  double seconds = 60;  ///< for the solver
+};
+
+/// Why these bounds are not found for the model; empty: they are. Linear models without intervals,
+/// E = I, W and V zonotopes, X0 without constraints.
+std::string why_not_identified(const Model& model);
+
+/// One sparse linear program over all samples, which follow each other; O(N) columns and rows.
+/// Outputs that are missing are left out. Throws Errc::unsupported where `why_not_identified` has a
+/// reason, Errc::invalid for samples whose k do not follow each other.
+BoundFactors identify_bounds(const Model& model, std::span<const Sample> samples,
+                             const IdentifyOptions& options = {});
+
+/// c + G diag(s) ξ.
+LineForm with_factors(const LineForm& zonotope, VectorIn factors);
+
+}  // namespace cordon

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "study/study_run.hpp"
+
+using Json = nlohmann::ordered_json;
+using Run = test::StudyRun;
+
+namespace {
+
+/// Positions of a walk along a line, one of which is not there.
+constexpr const char* walk = "k,x\n0,0\n1,0.55\n2,1.02\n3,\n4,2.1\n5,2.49\n6,2.8\n7,3.3\n";
+
+Json study() {
+  return Json::parse(R"json({"cordon": 1, "title": "walk",
+    "system": {"type": "lti", "A": [[1, 0.5], [0, 1]], "Bw": [[0.125], [0.5]], "C": [[1, 0]],
+      "W": {"type": "box", "lower": [-1], "upper": [1]},
+      "V": {"type": "box", "lower": [-0.1], "upper": [0.1]}},
+    "data": {"csv": {"file": "d.csv", "outputs": ["x"], "missing": "skip"}},
+    "pipelines": [{"backend": "line_zonotope", "observer": "prediction_correction"}],
+    "metrics": ["radius"]})json");
+}
+
+}  // namespace
+
+TEST_CASE("bounds that explain a record are told with their proof, and written into a study") {
+  const Run run(study(), walk);
+  CAPTURE(run.outcome.out);
+  REQUIRE(run.outcome.code == 0);
+  const test::Outcome told = run("identify s.json --write t.json --trade-off");
+  CAPTURE(told.out);
+  CHECK(told.code == 0);
+  for (const char* what : {"8 samples of 8", "proven: not below",
+                           "by the outputs from k = ", "w_1    0 ± 1", "Trade-off", "Wrote t.json"})
+    CHECK(told.out.find(what) != std::string::npos);
+  const test::Outcome as_json = run("identify s.json --json");
+  const Json report = Json::parse(as_json.out);
+  const double factor = report["factors"]["cost"].get<double>();
+  CHECK(factor > 0);
+  CHECK(factor < 1);
+  CHECK(report["factors"]["proven"].get<double>() == doctest::Approx(factor).epsilon(1e-6));
+  const Json written = Json::parse(run.text("t.json"));
+  CHECK(written["system"]["W"]["upper"][0].get<double>() == doctest::Approx(factor));
+  CHECK(written["system"]["V"]["upper"][0].get<double>() == doctest::Approx(0.1 * factor));
+  CHECK(run("run t.json --out again --no-report").code == 0);
+  const test::Outcome again = run("identify t.json --json");
+  CHECK(Json::parse(again.out)["factors"]["cost"].get<double>() ==
+        doctest::Approx(1).epsilon(1e-5));
+  const test::Outcome over = run("identify s.json --write t.json");
+  CHECK(over.code == 2);
+  CHECK(over.out.find("exists already") != std::string::npos);
+}
+
+TEST_CASE("bounds of a part are tried on all samples") {
+  const Run run(study(), walk);
+  const test::Outcome told = run("identify s.json --train 40%");
+  CAPTURE(told.out);
+  CHECK(told.code == 0);
+  CHECK(told.out.find("3 samples of 8") != std::string::npos);
+  CHECK(told.out.find("They do not explain all samples") != std::string::npos);
+  const Run longer(study(), std::string(walk) + "8,3.75\n9,4.2\n");
+  const test::Outcome enough = longer("identify s.json --train 80%");
+  CAPTURE(enough.out);
+  CHECK(enough.out.find("They explain the rest of the samples, too") != std::string::npos);
+}
+
+TEST_CASE("options that are wrong and studies without such bounds are refused") {
+  const Run run(study(), walk);
+  for (const char* wrong :
+       {"--train 0%", "--train 101%", "--train most", "--train 70%%", "--scale X", "--train nan"}) {
+    CAPTURE(std::string(wrong));
+    CHECK(run(std::string("identify s.json ") + wrong).code == 2);
+  }
+  Json uncertain = study();
+  uncertain["system"]["type"] = "interval_lti";
+  uncertain["system"]["A"] = {{"center", {{1, 0.5}, {0, 1}}}, {"radius", {{0, 0.1}, {0, 0}}}};
+  const Run refused(uncertain, walk);
+  const test::Outcome told = refused("identify s.json");
+  CHECK(told.code == 2);
+  CHECK(told.out.find("matrices of the system are known by intervals") != std::string::npos);
+}
+
+TEST_CASE("where nothing explains the data there is no factor") {
+  Json fixed = study();
+  fixed["system"]["W"] = Json::parse(R"({"type": "point", "center": [0]})");
+  fixed["system"]["V"] = Json::parse(R"({"type": "point", "center": [0]})");
+  const Run run(fixed, walk);
+  const test::Outcome told = run("identify s.json");
+  CHECK(told.code == 5);
+  CHECK(told.out.find("No factors explain the data") != std::string::npos);
+}
