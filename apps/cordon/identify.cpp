@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Status = BoundFactors::Status;
 
-constexpr std::size_t most_samples = 20'000;
+constexpr std::size_t most_identified = 20'000;
 constexpr double agrees = 1 + 1e-6;  ///< a factor up to this counts as 1: what the solver rounds
 constexpr double shares_of_V[] = {0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 2};
 
@@ -61,10 +61,10 @@ std::vector<Sample> samples_of(const Study& study) {
   std::vector<Sample> samples;
   const auto source = open_data(study);
   while (auto record = source->next()) {
-    if (samples.size() == most_samples) {
+    if (samples.size() == most_identified) {
       throw Error(Errc::invalid, fmt::format("there are more than {} samples; identify bounds from "
                                              "a part of them",
-                                             most_samples));
+                                             most_identified));
     }
     samples.push_back(std::move(record->sample));
   }

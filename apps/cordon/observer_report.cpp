@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "needed_bounds.hpp"
+
 namespace cordon::apps {
 
 namespace {
@@ -132,6 +134,7 @@ std::string times_begun(std::int64_t times) {
 std::string contradictions_text(const Study& study, const RunOutcome& outcome, const Paint& paint) {
   const Labels& labels = study.labels;
   std::string text;
+  Index empty_from = -1;
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     const EstimationOutcome& found = *pipeline.estimation();
     if (const auto& first = found.contradiction) {
@@ -151,8 +154,10 @@ std::string contradictions_text(const Study& study, const RunOutcome& outcome, c
                           time_text(labels, found.not_enclosed_from), found.why_not_enclosed);
     }
     if (found.outliers > 0) text += outliers_text(labels, pipeline.name, found);
+    if (found.contradiction && (empty_from < 0 || found.contradiction->k < empty_from))
+      empty_from = found.contradiction->k;
   }
-  return text;
+  return empty_from < 0 ? text : text + needed_bounds_text(study, empty_from);
 }
 
 NamedGains gains_of(const RunOutcome& outcome) {

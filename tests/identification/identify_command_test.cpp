@@ -52,6 +52,22 @@ TEST_CASE("bounds that explain a record are told with their proof, and written i
   CHECK(over.out.find("exists already") != std::string::npos);
 }
 
+TEST_CASE("a run that ends with an empty estimate tells which bounds would have explained it") {
+  Json narrow = study();
+  narrow["system"]["W"] = Json::parse(R"({"type": "box", "lower": [-0.01], "upper": [0.01]})");
+  const Run run(narrow, walk);
+  CAPTURE(run.outcome.out);
+  CHECK(run.outcome.code == 0);
+  CHECK(run.outcome.out.find("the outputs would be explained by W and V ") != std::string::npos);
+  CHECK(run.outcome.out.find("see cordon identify") != std::string::npos);
+  narrow["pipelines"][0]["observer"] = Json::parse(R"({"type": "prediction_correction",
+                      "initial_set": {"type": "box", "lower": [5, 5], "upper": [6, 6]}})");
+  narrow["system"]["W"] = study()["system"]["W"];
+  const Run elsewhere(narrow, walk);
+  CAPTURE(elsewhere.outcome.out);
+  CHECK(elsewhere.outcome.out.find("such as its initial set") != std::string::npos);
+}
+
 TEST_CASE("bounds of a part are tried on all samples") {
   const Run run(study(), walk);
   const test::Outcome told = run("identify s.json --train 40%");
