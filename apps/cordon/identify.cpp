@@ -12,6 +12,7 @@
 #include "commands.hpp"
 #include "cordon/study/data.hpp"
 #include "identified_study.hpp"
+#include "interrupt.hpp"
 #include "json_text.hpp"
 
 namespace cordon::apps {
@@ -28,6 +29,7 @@ constexpr double shares_of_V[] = {0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 2};
 struct IdentifyArguments {
   std::filesystem::path study, write;
   std::string scale = "both", train = "100%";
+  Index leave_out = 0;
   bool trade_off = false, json = false;
 };
 
@@ -90,6 +92,7 @@ struct Identified {
   /// others.
   std::optional<BoundFactors> rest;
   std::vector<TradeOff> trade_off;
+  std::optional<LeftOutSamples> left_out;  ///< for half of the factor
 };
 
 Identified identified(const Study& study, const IdentifyArguments& arguments) {
@@ -100,11 +103,17 @@ Identified identified(const Study& study, const IdentifyArguments& arguments) {
       static_cast<std::size_t>(share_from(arguments.train) * static_cast<double>(samples.size())));
   const std::span<const Sample> first(samples.data(), trained);
   const IdentifyOptions options{scale_from(arguments.scale)};
-  Identified result{samples.size(), trained, identify_bounds(study.model, first, options), {}, {}};
+  Identified result{
+      samples.size(), trained, identify_bounds(study.model, first, options), {}, {}, {}};
   const BoundFactors& found = result.factors;
   if (found.status == Status::found && trained < samples.size()) {
     result.rest = identify_bounds(
         scaled_model(study.model, found.disturbances * agrees, found.noises * agrees), samples);
+  }
+  if (arguments.leave_out > 0 && found.status == Status::found) {
+    const std::atomic<bool>* const stop = stop_on_signals();
+    result.left_out = leave_out(study.model, first, found.cost / 2, arguments.leave_out, options,
+                                [stop] { return stop->load(); });
   }
   for (const double share : shares_of_V) {
     if (!arguments.trade_off) break;
@@ -139,9 +148,9 @@ std::string bounds_text(const Study& study, const BoundFactors& found, const Pai
 }
 
 std::string proof_text(const BoundFactors& found) {
-  if (found.first < 0) return found.proven >= found.cost ? "" : "   nothing is proven";
+  if (found.required_by.empty()) return found.proven >= found.cost ? "" : "   nothing is proven";
   return fmt::format("   proven: not below {:.6g}, by the outputs from k = {} to {}", found.proven,
-                     found.first, found.last);
+                     found.required_by.front(), found.required_by.back());
 }
 
 std::string rest_text(const Identified& result) {
@@ -153,6 +162,23 @@ std::string rest_text(const Identified& result) {
       "They do not explain all samples. For these they would have to grow:\n"
       "Factor  {:.6g}{}\n",
       result.rest->cost, proof_text(*result.rest));
+}
+
+std::string left_out_text(const LeftOutSamples& left_out, const Paint& paint) {
+  std::vector<std::vector<std::string>> rows{{"WITHOUT K =", "FACTOR", "PROVEN"}};
+  for (const auto& [k, factors] : left_out.steps)
+    rows.push_back(
+        {std::to_string(k), factor_text(factors), fmt::format("{:.6g}", factors.proven)});
+  std::string text = "\nOutputs to leave out for half of it\n" + table(rows, paint);
+  if (!left_out.is_enough) text += "These are not enough.\n";
+  const Index needed = left_out.at_least;
+  if (left_out.is_enough && needed == std::ssize(left_out.steps)) {
+    text += "No fewer do, which is proven.\n";
+  } else {
+    text +=
+        fmt::format("At least {} must be left out, which is proven.\n", count(needed, "sample"));
+  }
+  return text;
 }
 
 std::string report_text(const Study& study, const Identified& result,
@@ -172,6 +198,7 @@ std::string report_text(const Study& study, const Identified& result,
                         found.cost, proof_text(found));
     text += bounds_text(study, found, paint);
     text += rest_text(result);
+    if (result.left_out) text += left_out_text(*result.left_out, paint);
   }
   if (result.trade_off.empty()) return text;
   std::vector<std::vector<std::string>> rows{{"FACTOR OF V", "OF W", "PROVEN"}};
@@ -188,8 +215,7 @@ Json to_json(const BoundFactors& factors) {
   return {{"status", "found"},
           {"cost", factors.cost},
           {"proven", factors.proven},
-          {"first", factors.first},
-          {"last", factors.last},
+          {"required_by", factors.required_by},
           {"W", std::vector<double>(factors.disturbances.begin(), factors.disturbances.end())},
           {"V", std::vector<double>(factors.noises.begin(), factors.noises.end())}};
 }
@@ -200,6 +226,14 @@ std::string report_json(const Identified& result, const IdentifyArguments& argum
               {"trained", result.trained},
               {"factors", to_json(result.factors)},
               {"all_samples", result.rest ? to_json(*result.rest) : Json(nullptr)}};
+  if (result.left_out) {
+    Json& left_out = report["left_out"];
+    left_out = {{"enough", result.left_out->is_enough},
+                {"at_least", result.left_out->at_least},
+                {"samples", Json::array()}};
+    for (const auto& [k, factors] : result.left_out->steps)
+      left_out["samples"].push_back({{"k", k}, {"factors", to_json(factors)}});
+  }
   for (const auto& [of_V, W] : result.trade_off)
     report["trade_off"].push_back({{"V", of_V}, {"W", to_json(W)}});
   return json_text(report);
@@ -247,6 +281,11 @@ CORDON_COMMAND(identify) {
       ->add_option("--train", arguments->train,
                    "Take the bounds from this first part of the samples, and try them on all")
       ->option_text("70%");
+  command
+      ->add_option("--leave-out", arguments->leave_out,
+                   "Look for samples without which half of the factor does, so many at most")
+      ->check(CLI::Range(1, 1000))
+      ->option_text("N");
   command->add_flag("--trade-off", arguments->trade_off,
                     "The least factor of W for several factors of V, too");
   command

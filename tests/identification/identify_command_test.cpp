@@ -81,6 +81,19 @@ TEST_CASE("bounds of a part are tried on all samples") {
   CHECK(enough.out.find("They explain the rest of the samples, too") != std::string::npos);
 }
 
+TEST_CASE("samples to leave out are told, with a proof that fewer do not do") {
+  const Run run(study(), "k,x\n0,0\n1,0.5\n2,1\n3,4\n4,2\n5,2.5\n6,3\n");
+  const test::Outcome told = run("identify s.json --leave-out 3");
+  CAPTURE(told.out);
+  CHECK(told.code == 0);
+  CHECK(told.out.find("WITHOUT K =") != std::string::npos);
+  CHECK(told.out.find("\n3  ") != std::string::npos);
+  CHECK(told.out.find("No fewer do, which is proven.") != std::string::npos);
+  const Json report = Json::parse(run("identify s.json --leave-out 3 --json").out);
+  CHECK(report["left_out"]["samples"][0]["k"] == 3);
+  CHECK(report["left_out"]["at_least"] == 1);
+}
+
 TEST_CASE("options that are wrong and studies without such bounds are refused") {
   const Run run(study(), walk);
   for (const char* wrong :

@@ -62,8 +62,10 @@ BoundFactors identify_bounds(const Model& model, std::span<const Sample> samples
                                                    (1 - proven_enough) * found.cost);
   if (!proof) return found;
   found.proven = proof->least;
-  found.first = samples[as_size(proof->first)].k;
-  found.last = samples[as_size(proof->last)].k;
+  for (const Index place : proof->samples) {
+    found.required_by.push_back(samples[as_size(place)].k);
+    found.weights.push_back(multipliers.col(place).cwiseAbs().sum());
+  }
   return found;
 }
 

@@ -210,7 +210,9 @@ class Prover {
 
   std::optional<ScalingProof> ended() const {
     const Rational most = *std::max_element(reach_.begin(), reach_.end());
-    ScalingProof proof{0, first_, last_};
+    ScalingProof proof{0, {}};
+    for (Index k = first_; k <= last_; ++k)
+      if (largest(mu_[as_size(k)]) > 0) proof.samples.push_back(k);
     if (left_ <= 0) return proof;
     proof.least = most > 0 ? std::max(0.0, rational::enclose(left_ / most).lower) : infinity;
     return proof;

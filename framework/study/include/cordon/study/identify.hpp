@@ -2,6 +2,7 @@
 // The smallest bounds that explain data.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,8 +35,10 @@ struct BoundFactors {
   /// No factors of smaller cost explain the samples, and so no smaller factor where there is one:
   /// from multipliers of the outputs, in rational arithmetic. At least 0.
   double proven = 0;
-  /// The outputs whose multipliers are not 0, which alone require that.
-  Index first = -1, last = -1;
+  /// k of the samples whose outputs have multipliers that are not 0, which alone require that, in
+  /// ascending order; empty: nothing is proven.
+  std::vector<Index> required_by = {};
+  std::vector<double> weights = {};  ///< of these: their multipliers' magnitudes
 };
 
 struct IdentifyOptions {
@@ -52,6 +55,25 @@ std::string why_not_identified(const Model& model);
 /// reason, Errc::invalid for samples whose k do not follow each other.
 BoundFactors identify_bounds(const Model& model, std::span<const Sample> samples,
                              const IdentifyOptions& options = {});
+
+/// Samples whose outputs are left out so that one factor for W and V does for the others.
+struct LeftOutSamples {
+  struct Step {
+    Index k;
+    BoundFactors factors;  ///< of the samples that are left then
+  };
+  std::vector<Step> steps;  ///< one sample after the other
+  /// So many have to be left out at least: there are as many sets of samples, without any in
+  /// common, of which each is proven to require a larger factor.
+  Index at_least = 0;
+  bool is_enough = false;  ///< the factor wanted was reached
+};
+
+/// Greedily: of the samples that require the factor the one that leaves the smallest one. Some
+/// dozen programs for each. `stop` is asked between them.
+LeftOutSamples leave_out(const Model& model, std::span<const Sample> samples, double wanted,
+                         Index most, const IdentifyOptions& options,
+                         const std::function<bool()>& stop = {});
 
 /// c + G diag(s) ξ.
 LineForm with_factors(const LineForm& zonotope, VectorIn factors);

@@ -14,8 +14,8 @@ namespace cordon::identification {
 /// D_j the magnitudes of the coefficients of the generators that s_j scales, added up over k. So
 /// Σ_j s_j ≥ (left - fixed) / max_j D_j.
 struct ScalingProof {
-  double least;       ///< of the cost, rounded down; 0 at least
-  Index first, last;  ///< samples whose μ_k is not 0
+  double least;                ///< of the cost, rounded down; 0 at least
+  std::vector<Index> samples;  ///< whose μ_k is not 0: their places, in ascending order
 };
 
 /// `multipliers`: μ, a column per sample, 0 where outputs are missing. Small ones are left out; the
