@@ -51,7 +51,8 @@ Vector box_gain(MatrixIn G, VectorIn rho, double sigma) {
   const Index n = G.rows();
   if (G.cols() <= n) return segment_gain(G, rho, sigma);
   Vector widths = G.cwiseAbs().rowwise().sum();
-  for (double& width : widths) width = width > 0 ? width : 1;
+  // the inverse of a subnormal width is infinite
+  for (double& width : widths) width = width >= std::numeric_limits<double>::min() ? width : 1;
   const Matrix box =
       reduce_generators(widths.cwiseInverse().asDiagonal() * G, n, GeneratorReduction::pca);
   return segment_gain(widths.asDiagonal() * box, rho, sigma);

@@ -291,6 +291,19 @@ TEST_CASE("points of a zonotope in a strip lie in the enclosure") {
   }));
 }
 
+TEST_CASE("a coordinate as wide as the smallest numbers is no reason to fail") {
+  const double least = std::numeric_limits<double>::denorm_min();
+  const Zonotope Z{Vector{{5, 5, 0}}, Matrix{{5, 1, 0, 0}, {0, 5, 1, 0}, {0, 0, 0, 4 * least}}};
+  for (const StripMethod method : methods) {
+    CAPTURE(static_cast<int>(method));
+    const auto cut = intersect_strip(Z, Vector{{1, 0, 0}}, 4.2, 0.05, method);
+    REQUIRE(cut.has_value());
+    CHECK(cut->G.allFinite());
+    CHECK(cut->c.allFinite());
+    CHECK(std::abs(cut->c[0] - 4.2) <= cut->G.row(0).lpNorm<1>());
+  }
+}
+
 TEST_CASE("states that explain an output survive its correction") {
   CHECK(rc::check([] {
     const Index n = arbitrary_dim(), p = arbitrary_dim(3), q = *rc::gen::inRange<Index>(0, 4);
