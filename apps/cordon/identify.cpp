@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/study/identify.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <memory>
 #include <optional>
@@ -10,10 +11,13 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "cordon/experiments/report.hpp"
 #include "cordon/study/data.hpp"
 #include "identified_study.hpp"
 #include "interrupt.hpp"
 #include "json_text.hpp"
+#include "new_file.hpp"
+#include "searched_bounds.hpp"
 
 namespace cordon::apps {
 
@@ -27,8 +31,8 @@ constexpr double agrees = 1 + 1e-6;  ///< a factor up to this counts as 1: what 
 constexpr double shares_of_V[] = {0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 2};
 
 struct IdentifyArguments {
-  std::filesystem::path study, write;
-  std::string scale = "both", train = "100%";
+  std::filesystem::path study, write, figure;
+  std::string scale = "both", train = "100%", pipeline;
   Index leave_out = 0;
   bool trade_off = false, json = false;
 };
@@ -95,18 +99,20 @@ struct Identified {
   std::optional<LeftOutSamples> left_out;  ///< for half of the factor
 };
 
-Identified identified(const Study& study, const IdentifyArguments& arguments) {
-  const std::vector<Sample> samples = samples_of(study);
-  if (samples.empty()) throw Error(Errc::invalid, "the data hold no sample");
-  const auto trained = std::max<std::size_t>(
-      1,
-      static_cast<std::size_t>(share_from(arguments.train) * static_cast<double>(samples.size())));
-  const std::span<const Sample> first(samples.data(), trained);
+/// The first of them that bounds are taken from.
+std::span<const Sample> trained_part(std::span<const Sample> samples, const std::string& share) {
+  const double count = share_from(share) * static_cast<double>(samples.size());
+  return samples.first(std::max<std::size_t>(1, static_cast<std::size_t>(count)));
+}
+
+Identified identified(const Study& study, const std::vector<Sample>& samples,
+                      const IdentifyArguments& arguments) {
+  const std::span<const Sample> first = trained_part(samples, arguments.train);
   const IdentifyOptions options{scale_from(arguments.scale)};
   Identified result{
-      samples.size(), trained, identify_bounds(study.model, first, options), {}, {}, {}};
+      samples.size(), first.size(), identify_bounds(study.model, first, options), {}, {}, {}};
   const BoundFactors& found = result.factors;
-  if (found.status == Status::found && trained < samples.size()) {
+  if (found.status == Status::found && first.size() < samples.size()) {
     result.rest = identify_bounds(
         scaled_model(study.model, found.disturbances * agrees, found.noises * agrees), samples);
   }
@@ -116,7 +122,7 @@ Identified identified(const Study& study, const IdentifyArguments& arguments) {
                                 [stop] { return stop->load(); });
   }
   for (const double share : shares_of_V) {
-    if (!arguments.trade_off) break;
+    if (!arguments.trade_off && arguments.figure.empty()) break;
     const Model with_V = scaled_model(study.model, Vector::Ones(study.model.W.generators()),
                                       Vector::Constant(study.model.V.generators(), share));
     result.trade_off.push_back({share, identify_bounds(with_V, first, {Scaled::disturbances})});
@@ -209,6 +215,17 @@ std::string report_text(const Study& study, const Identified& result,
   return text + "\nTrade-off\n" + table(rows, paint);
 }
 
+/// The least factor of W over that of V.
+std::string trade_off_svg(const Study& study, const Identified& result) {
+  Curve curve{study.title, "factor of V", "least factor of W", {}, {}};
+  for (const auto& [of_V, W] : result.trade_off) {
+    curve.x.push_back(of_V);
+    curve.y.push_back(W.status == Status::found ? W.cost
+                                                : std::numeric_limits<double>::quiet_NaN());
+  }
+  return svg_of(curve);
+}
+
 Json to_json(const BoundFactors& factors) {
   if (factors.status != Status::found)
     return {{"status", factors.status == Status::none ? "none" : "failed"}};
@@ -239,21 +256,65 @@ std::string report_json(const Identified& result, const IdentifyArguments& argum
   return json_text(report);
 }
 
+/// With the estimates of a pipeline. `why`: no linear program finds the bounds; empty: it would.
+Exit searched(const Study& study, const std::vector<Sample>& samples,
+              const IdentifyArguments& arguments, const Registry& registry,
+              const std::string& why) {
+  const Scaled scaled = scale_from(arguments.scale);
+  if (scaled == Scaled::each || arguments.leave_out > 0 || arguments.trade_off ||
+      !arguments.write.empty() || !arguments.figure.empty()) {
+    throw Error(Errc::invalid,
+                "--scale each, --leave-out, --trade-off, --figure and --write need a linear "
+                "program, and there is none: " +
+                    (why.empty() ? "a pipeline was named" : why));
+  }
+  const std::vector<const PipelineSpec*> all = pipelines_called(study, arguments.pipeline);
+  const auto with_observer =
+      std::ranges::find_if(all, [](const PipelineSpec* one) { return one->estimation(); });
+  if (with_observer == all.end()) {
+    throw Error(Errc::invalid,
+                "bounds are sought with the estimates of a pipeline, and there is "
+                "none with an observer; " +
+                    why);
+  }
+  const BoundSearch search{
+      study, **with_observer, registry, trained_part(samples, arguments.train), samples, scaled};
+  const std::atomic<bool>* const stop = stop_on_signals();
+  const SearchedBounds found = search_bounds(search, [stop] { return stop->load(); });
+  if (arguments.json) {
+    print(json_of(found, search));
+  } else {
+    const Paint paint(stdout);
+    print((study.title.empty() ? "" : paint.bold(study.title) + "\n") +
+          fmt::format("{} of {}\n\n",
+                      count(static_cast<std::int64_t>(search.samples.size()), "sample"),
+                      samples.size()) +
+          text_of(found, search));
+  }
+  return found.kept < infinity ? Exit::done : Exit::unanswered;
+}
+
 Exit identify(const Program& program, const IdentifyArguments& arguments) {
   Registry registry;
   registry.load({program.plugins});
   const Study study =
       read_study(arguments.study, registry, default_search_path(), program.study_plugins());
   for (const std::string& warning : study.warnings) warn(warning);
-  if (const std::string why = why_not_identified(study.model); !why.empty()) {
-    throw Error(Errc::invalid, "bounds of this study are not identified: " + why);
-  }
   if (!study.modes.empty())
     warn("data are taken for those of \"" + study.nominal +
          "\": where a fault is in them, its bounds are no bounds of disturbances");
   if (!arguments.write.empty()) require_writable(study);
-  const Identified result = identified(study, arguments);
+  const std::vector<Sample> samples = samples_of(study);
+  if (samples.empty()) throw Error(Errc::invalid, "the data hold no sample");
+  const std::string why = why_not_identified(study.model);
+  if (!why.empty() || !arguments.pipeline.empty())
+    return searched(study, samples, arguments, registry, why);
+  const Identified result = identified(study, samples, arguments);
   print(arguments.json ? report_json(result, arguments) : report_text(study, result, arguments));
+  if (!arguments.figure.empty()) {
+    write_new_file(arguments.figure, trade_off_svg(study, result));
+    note(fmt::format("Wrote {}", arguments.figure.string()));
+  }
   if (result.factors.status != Status::found) return Exit::unanswered;
   if (!arguments.write.empty()) {
     write_identified(
@@ -288,9 +349,16 @@ CORDON_COMMAND(identify) {
       ->option_text("N");
   command->add_flag("--trade-off", arguments->trade_off,
                     "The least factor of W for several factors of V, too");
+  command->add_option("--figure", arguments->figure, "Draw the trade-off into a new SVG file")
+      ->option_text("FILE");
   command
       ->add_option("--write", arguments->write, "Write the study with these bounds to a new file")
       ->option_text("FILE");
+  command
+      ->add_option("--pipeline", arguments->pipeline,
+                   "Search with the estimates of this pipeline. Without it the first one is taken "
+                   "where the system is no linear one with known matrices")
+      ->option_text("NAME");
   command->add_flag("--json", arguments->json, "Print JSON for programs instead of tables");
   command->footer(
       "Generators of W and V are scaled around their centres; the system, X0 and what is not "

@@ -48,7 +48,7 @@ std::string needed_bounds_text(const Study& study, Index k) {
   if (both.cost <= 1) {
     return fmt::format(
         "The study's W and V do explain the outputs up to {}: what is wrong is what "
-        "the pipeline assumes beside them, such as its initial set\n",
+        "the pipeline assumes beside them, such as its initial or admissible set\n",
         until);
   }
   return fmt::format(

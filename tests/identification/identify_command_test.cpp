@@ -65,7 +65,7 @@ TEST_CASE("a run that ends with an empty estimate tells which bounds would have 
   narrow["system"]["W"] = study()["system"]["W"];
   const Run elsewhere(narrow, walk);
   CAPTURE(elsewhere.outcome.out);
-  CHECK(elsewhere.outcome.out.find("such as its initial set") != std::string::npos);
+  CHECK(elsewhere.outcome.out.find("such as its initial or admissible set") != std::string::npos);
 }
 
 TEST_CASE("bounds of a part are tried on all samples") {
@@ -94,6 +94,46 @@ TEST_CASE("samples to leave out are told, with a proof that fewer do not do") {
   CHECK(report["left_out"]["at_least"] == 1);
 }
 
+TEST_CASE("bounds are sought with the estimates of a pipeline where no program finds them") {
+  Json formulas = study();
+  formulas["system"] = Json::parse(R"json({"type": "nonlinear", "states": ["x", "v"],
+    "disturbances": ["a"], "noises": ["e"],
+    "f": ["x + 0.5*v + 0.125*a", "v - 0.01*v*abs(v) + 0.5*a"], "g": ["x + e"],
+    "X0": {"type": "box", "lower": [-1, -3], "upper": [1, 3]},
+    "W": {"type": "box", "lower": [-1], "upper": [1]},
+    "V": {"type": "box", "lower": [-0.1], "upper": [0.1]}})json");
+  formulas["pipelines"] =
+      Json::parse(R"([{"backend": "constrained_zonotope", "observer": "nonlinear"}])");
+  const Run run(formulas, walk);
+  CAPTURE(run.outcome.out);
+  REQUIRE(run.outcome.code == 0);
+  const test::Outcome told = run("identify s.json");
+  CAPTURE(told.out);
+  CHECK(told.code == 0);
+  CHECK(told.out.find("By the estimates of pipeline \"constrained_zonotope\"") !=
+        std::string::npos);
+  CHECK(told.out.find("is proven empty") != std::string::npos);
+  const Json report = Json::parse(run("identify s.json --json --train 50%").out);
+  CHECK(report["trained"] == 4);
+  CHECK(report["refuted"].get<double>() < report["kept"].get<double>());
+  const test::Outcome each = run("identify s.json --scale each");
+  CHECK(each.code == 2);
+  CHECK(each.out.find("the system is written as formulas") != std::string::npos);
+}
+
+TEST_CASE("what estimates refute is no more than what the program proves") {
+  const Run run(study(), walk);
+  for (const char* scale : {"both", "W", "V"}) {
+    CAPTURE(std::string(scale));
+    const std::string options = std::string("identify s.json --json --scale ") + scale;
+    const double least = Json::parse(run(options).out)["factors"]["cost"].get<double>();
+    const Json sought = Json::parse(run(options + " --pipeline line_zonotope").out);
+    CHECK(sought["refuted"].get<double>() <= least * (1 + 1e-6));
+    CHECK(sought["refuted"].get<double>() >= 0.5 * least);
+    CHECK(sought["kept"].get<double>() <= 1.02 * sought["refuted"].get<double>());
+  }
+}
+
 TEST_CASE("options that are wrong and studies without such bounds are refused") {
   const Run run(study(), walk);
   for (const char* wrong :
@@ -105,7 +145,7 @@ TEST_CASE("options that are wrong and studies without such bounds are refused") 
   uncertain["system"]["type"] = "interval_lti";
   uncertain["system"]["A"] = {{"center", {{1, 0.5}, {0, 1}}}, {"radius", {{0, 0.1}, {0, 0}}}};
   const Run refused(uncertain, walk);
-  const test::Outcome told = refused("identify s.json");
+  const test::Outcome told = refused("identify s.json --trade-off");
   CHECK(told.code == 2);
   CHECK(told.out.find("matrices of the system are known by intervals") != std::string::npos);
 }

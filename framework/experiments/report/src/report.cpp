@@ -110,4 +110,15 @@ std::string add_report(const std::filesystem::path& directory,
   }
 }
 
+std::string svg_of(const Curve& curve) {
+  report::Plot plot;
+  plot.x_label = curve.x_label;
+  plot.y_label = curve.y_label;
+  for (const auto kind : {report::Series::Kind::line, report::Series::Kind::points})
+    plot.series.push_back({kind, "", report::of_data, curve.x, curve.y});
+  report::Report report;
+  report.title = curve.title;
+  return report::svg_of({"curve", "", curve.title, "", std::move(plot)}, report);
+}
+
 }  // namespace cordon

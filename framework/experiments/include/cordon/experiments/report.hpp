@@ -28,4 +28,12 @@ std::vector<std::filesystem::path> write_report(const std::filesystem::path& dir
 std::string add_report(const std::filesystem::path& directory,
                        std::vector<std::filesystem::path>& files) noexcept;
 
+/// Points in the order of x; NaN is a gap.
+struct Curve {
+  std::string title, x_label, y_label;
+  std::vector<double> x, y;
+};
+/// The curve through them as an SVG file for a paper.
+std::string svg_of(const Curve& curve);
+
 }  // namespace cordon
