@@ -22,6 +22,7 @@
 
 #include "components.hpp"
 #include "cordon/core/error.hpp"
+#include "cordon/interfaces/nonlinear_model.hpp"
 #include "diagnosers/mode_elimination.hpp"
 #include "diagnosers/mode_gain.hpp"
 #include "diagnosers/mode_workers.hpp"
@@ -45,7 +46,10 @@ class ConsistencyBank final : public Diagnoser {
       observers_.push_back(
           context.make->make_observer(params.component("observer"), {mode.model, context.backend}));
     }
-    restart_ = restart_set(context, params, *observers_.front());
+    if (const auto set = restart_set(context, params, *observers_.front())) {
+      for (const Mode& mode : bank().modes)
+        restarts_.push_back(context.backend->import(within_parameters(*set, mode.model)));
+    }
   }
 
   std::vector<Gain> gains() const override {
@@ -58,17 +62,26 @@ class ConsistencyBank final : public Diagnoser {
   }
 
   /// The set from which modes begin anew; none: they cannot.
-  static std::optional<Enclosure> restart_set(const DiagnoserContext& context, const Params& params,
-                                              const Observer& observer) {
-    if (params.has("restart_set")) return context.backend->import(params.set_form("restart_set"));
-    if (const auto admissible = observer.admissible_set())
-      return context.backend->import(*admissible);
-    if (context.backend->info().unbounded)
-      return context.backend->space(context.bank[0].model.linear.states());
+  static std::optional<LineForm> restart_set(const DiagnoserContext& context, const Params& params,
+                                             const Observer& observer) {
+    if (params.has("restart_set")) return params.set_form("restart_set");
+    if (const auto admissible = observer.admissible_set()) return *admissible;
+    if (context.backend->info().unbounded) return make_space(context.bank[0].model.states());
     return {};
   }
 
  private:
+  /// Parameters that are states have the mode's bounds, whatever the set says of them.
+  static LineForm within_parameters(const LineForm& set, const Model& model) {
+    const Index count = model.nonlinear ? model.nonlinear->parameters : 0;
+    if (count == 0) return set;
+    const Index others = set.dim() - count;
+    const LineForm& X0 = model.X0;  // with the box of the parameters, in generators of their own
+    return cartesian_product(
+        affine_map(set, Matrix::Identity(others, set.dim()), Vector::Zero(others)),
+        make_zonotope(X0.c.tail(count), X0.G.bottomRows(count)));
+  }
+
   using Estimates = std::vector<std::optional<Estimate>>;  ///< by mode; none: not at work
 
   bool do_takes_missing_outputs() const override {
@@ -78,6 +91,7 @@ class ConsistencyBank final : public Diagnoser {
 
   void do_start() override {
     for (const auto& observer : observers_) observer->start();
+    lost_.assign(observers_.size(), 0);
     ended_ = unfinished_ = false;
   }
 
@@ -91,11 +105,12 @@ class ConsistencyBank final : public Diagnoser {
     if (!ended_) since_ = elimination_.since();
     const Estimates estimates = advance(now);
     const bool none_left = !ended_ && elimination_.update(now.k, excluded_by(estimates));
-    ended_ = ended_ || (none_left && !restart_);
+    ended_ = ended_ || (none_left && restarts_.empty());
     Diagnosis result = diagnosis(now.k, estimates);
-    result.reset = none_left && restart_;
+    result.reset = none_left && !restarts_.empty();
     if (result.reset) {
-      for (const auto& observer : observers_) observer->start(restart_);
+      for (std::size_t j = 0; j < observers_.size(); ++j) observers_[j]->start(restarts_[j]);
+      lost_.assign(observers_.size(), 0);
       advance(
           now);  // what this sample alone excludes stays excluded, and is told with the next one
     }
@@ -108,11 +123,16 @@ class ConsistencyBank final : public Diagnoser {
     Estimates estimates(observers_.size());
     std::vector<std::size_t> running;
     for (std::size_t j = 0; j < observers_.size(); ++j) {
-      if (is_candidate(j)) running.push_back(j);
+      if (is_candidate(j) && lost_[j] == 0) running.push_back(j);
     }
     workers_.for_each(static_cast<Index>(running.size()), [&](Index i) {
       const std::size_t j = running[static_cast<std::size_t>(i)];
-      estimates[j] = observers_[j]->step(now);
+      try {
+        estimates[j] = observers_[j]->step(now);
+      } catch (const Error& error) {
+        if (error.code() != Errc::not_enclosed) throw;
+        lost_[j] = 1;
+      }
     });
     return estimates;
   }
@@ -142,7 +162,10 @@ class ConsistencyBank final : public Diagnoser {
       result.modes[j].candidate = is_candidate(j);
       if (estimates[j]) set_evidence(result.modes[j], *estimates[j]);
     }
-    if (result.mode >= 0) result.estimate = estimates[static_cast<std::size_t>(result.mode)]->set;
+    if (result.mode >= 0) {
+      if (const auto& estimate = estimates[static_cast<std::size_t>(result.mode)])
+        result.estimate = estimate->set;
+    }
     return result;
   }
 
@@ -156,7 +179,9 @@ class ConsistencyBank final : public Diagnoser {
 
   ModeElimination elimination_;
   std::vector<std::shared_ptr<Observer>> observers_;
-  std::optional<Enclosure> restart_;
+  std::vector<Enclosure> restarts_;  ///< from which modes begin anew; empty: they cannot
+  /// Whose formulas could not be enclosed any more: they stay possible until a reset.
+  std::vector<char> lost_;
   Index since_ = 0;          ///< first sample of the estimates
   bool ended_ = false;       ///< no mode is left and none can begin anew
   bool unfinished_ = false;  ///< a step ended with an error half way
@@ -250,7 +275,10 @@ CORDON_COMPONENT(diagnoser, consistency_bank) {
       check_consistency_bank,
       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
         return std::make_unique<ConsistencyBank>(context, params);
-      }});
+      },
+      false,
+      true,
+      true});
 }
 
 }  // namespace cordon::estimators

@@ -182,7 +182,6 @@ TEST_CASE("mistakes in formulas are all told, with their columns") {
   system["states"] = {"angle", "rate", "sin"};
   system["parameters"]["dt"] = "x";
   system["A"] = Json::parse("[[1]]");
-  system["modes"] = Json::array();
   system["domain"] = "guessed";
   study["data"]["simulate"]["plant"] = "stirred_tank";
   const Run run(study);
@@ -194,8 +193,7 @@ TEST_CASE("mistakes in formulas are all told, with their columns") {
         "column 22: a noise cannot stand in f", "column 9: a disturbance cannot stand in g",
         "the \"(\" of column 5 is not closed", "the time cannot stand in invariants",
         "\"sin\" is no name for a state", "/system/parameters/dt", "/system/A (line",
-        "systems of type \"nonlinear\" have one mode", "unknown choice \"guessed\"",
-        "/data/simulate/plant"})
+        "unknown choice \"guessed\"", "/data/simulate/plant"})
     expect_told(run, what);
 }
 

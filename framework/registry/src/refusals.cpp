@@ -83,7 +83,7 @@ std::vector<Diagnostic> DesignerEntry::refusals(const DesignerContext& context,
 std::vector<Diagnostic> DiagnoserEntry::refusals(const DiagnoserContext& context,
                                                  const Registry&) const {
   const ModeBank& bank = context.bank;
-  if (!is_linear(bank)) return {for_linear_models(info.name, "")};
+  if (!takes_nonlinear && !is_linear(bank)) return {for_linear_models(info.name, "")};
   std::vector<Diagnostic> problems;
   for (const Mode& mode : bank.modes) {
     if (takes_uncertainty || !mode.model.linear.is_uncertain()) continue;

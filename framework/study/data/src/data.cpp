@@ -28,7 +28,7 @@ bool all_designed(const Study& study) {
 
 std::unique_ptr<DataSource> simulated(const Study& study, const SimulateSpec& spec, bool modes) {
   if (study.model.nonlinear)
-    return std::make_unique<detail::FormulaSource>(study.model, spec, study.file.string());
+    return std::make_unique<detail::FormulaSource>(study.model, spec, study.file.string(), modes);
   if (spec.made_plant)
     return std::make_unique<detail::PlantSource>(study.model, spec, study.file.string(), modes);
   const bool additive = study.model.linear.faults() > 0;

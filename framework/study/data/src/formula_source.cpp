@@ -25,21 +25,47 @@ std::optional<Vector> values_at(formulas::Evaluator& evaluator, Index rows, cons
   return made;
 }
 
-FormulaSource::FormulaSource(const Model& model, const SimulateSpec& spec, std::string file)
+FormulaSource::Regime::Regime(const Model& of, DrawSource draws_of)
+    : model(of),
+      draws(std::move(draws_of)),
+      f(of.nonlinear->f, Rounding::outward),
+      g(of.nonlinear->g, Rounding::outward) {}
+
+FormulaSource::FormulaSource(const Model& model, const SimulateSpec& spec, std::string file,
+                             bool modes)
     : spec_(spec),
       file_((check_simulation(model, spec, file), std::move(file))),
-      model_(model.nonlinear),
-      draws_(model, spec_, file_),
-      inputs_(spec_.input),
-      f_(model_->f, Rounding::outward),
-      g_(model_->g, Rounding::outward) {
+      modes_(modes),
+      timeline_(spec_.faults, file_),
+      nominal_(model, DrawSource(model, spec_, file_)),
+      inputs_(spec_.input) {
+  enter(0);
+  start();
+}
+
+void FormulaSource::start() {
   std::optional<Vector> start = spec_.x0;
-  if (!start) start = spec_.x0_set ? start_draws(spec_, file_).at(0) : central_point(model.X0);
+  if (!start)
+    start = spec_.x0_set ? start_draws(spec_, file_).at(0) : central_point(acting().model.X0);
   if (!start) {
     fail("/system/X0", "no point of the set was found to start from",
          "check its constraints, or give /data/simulate/x0");
   }
   x_ = *start;
+}
+
+/// Makes the mode of time k the acting one.
+void FormulaSource::enter(std::int64_t k) {
+  const Index acting_then = timeline_.at(k);
+  if (acting_then == acting_) return;
+  acting_ = acting_then;
+  fault_.reset();
+  if (acting_ >= 0) {
+    const auto index = static_cast<std::size_t>(acting_);
+    fault_.emplace(spec_.faults[index].model, DrawSource(spec_, index, file_));
+  }
+  const Index parameters = acting().model.nonlinear->parameters;
+  if (k > 0 && parameters > 0) x_.tail(parameters) = acting().model.X0.c.tail(parameters);
 }
 
 void FormulaSource::fail(const std::string& pointer, const std::string& message,
@@ -62,13 +88,17 @@ Vector FormulaSource::values(formulas::Evaluator& evaluator, Index rows, const c
 std::optional<Record> FormulaSource::next() {
   if (k_ > spec_.steps) return std::nullopt;
   const std::int64_t k = k_++;
-  const Draw draw = draws_.at(k);
+  enter(k);
+  Draw draw = nominal_.draws.at(k);  // at every step, so that other modes change no later draw
+  Regime& now = acting();
+  if (fault_) draw = now.draws.at(k);
   Record record;
   record.sample.k = static_cast<Index>(k);
   record.sample.u = inputs_.at(k);
   record.truth = x_;
-  record.sample.y = values(g_, model_->outputs(), "g", draw.v, record.sample.u, k);
-  if (k < spec_.steps) x_ = values(f_, model_->states(), "f", draw.w, record.sample.u, k);
+  record.sample.y = values(now.g, now.model.outputs(), "g", draw.v, record.sample.u, k);
+  if (k < spec_.steps) x_ = values(now.f, now.model.states(), "f", draw.w, record.sample.u, k);
+  if (modes_) record.mode = acting_ < 0 ? 0 : spec_.faults[static_cast<std::size_t>(acting_)].mode;
   return record;
 }
 

@@ -14,17 +14,23 @@ using Kind = Value::Kind;
 
 void read_range(const Cursor& at, const std::string& name, WrittenFormulas& written) {
   at.expect_keys({"lower", "upper", "varying"}, "key of a parameter", "");
-  const std::string form = "write {\"lower\": 0.1, \"upper\": 0.2}";
-  const auto lower_at = at.need("lower", form), upper_at = at.need("upper", form);
-  const auto lower = lower_at ? read_number(*lower_at) : std::nullopt;
-  const auto upper = upper_at ? read_number(*upper_at) : std::nullopt;
-  if (lower && upper && *lower > *upper) {
-    upper_at->error(
-        "is " + detail::to_text(*upper) + ", below the lower bound " + detail::to_text(*lower),
-        "exchange them");
+  ParameterRange range{name, 0, 0, false};
+  const auto read_bound = [&](const char* key, double& bound) {
+    const auto bound_at = at.need(key, "write {\"lower\": 0.1, \"upper\": 0.2}");
+    const auto number = bound_at ? read_number(*bound_at) : std::nullopt;
+    if (number) bound = *number;
+    return number.has_value();
+  };
+  const bool has_lower = read_bound("lower", range.lower),
+             has_upper = read_bound("upper", range.upper);
+  if (has_lower && has_upper && range.lower > range.upper) {
+    at.find("upper")->error("is " + detail::to_text(range.upper) + ", below the lower bound " +
+                                detail::to_text(range.lower),
+                            "exchange them");
   }
-  const auto varying = at.find("varying") ? read_flag(*at.find("varying")) : std::nullopt;
-  written.ranges.push_back({name, lower.value_or(0), upper.value_or(0), varying.value_or(false)});
+  if (const auto varying = at.find("varying"))
+    range.is_varying = read_flag(*varying).value_or(false);
+  written.ranges.push_back(std::move(range));
 }
 
 /// Does the name stand in the text? Letters within numbers, 1e5, are none.

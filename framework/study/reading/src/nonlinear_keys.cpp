@@ -26,8 +26,9 @@ void expect_nonlinear_keys(const Cursor& system) {
                 "remove it, and write formulas in f and g");
     }
   }
-  if (const auto at = system.find("modes"))
-    at->error("systems of type \"nonlinear\" have one mode", "remove it");
+  if (const auto at = system.find("plant") ? system.find("modes") : std::nullopt)
+    at->error("cannot stand beside \"plant\", whose formulas have no names",
+              "remove one of the two");
   if (const auto at = system.find("continuous"))
     at->error("formulas are those of the next time, x_{k+1} = f(x_k, w_k, u_k)",
               "write the step into f, as in \"x1 + dt*(...)\"");

@@ -161,7 +161,7 @@ void read_start(const Cursor& at, const SystemPart& system, SimulateSpec& spec,
 
 /// What is about the matrices of linear systems.
 void refuse_what_is_linear(const Cursor& at) {
-  for (const char* key : {"plant", "parameters", "faults", "additive_faults"}) {
+  for (const char* key : {"plant", "parameters", "additive_faults"}) {
     if (const auto found = at.find(key))
       found->error("is for linear systems, and this one is \"nonlinear\"",
                    "remove it: the formulas themselves are simulated");
@@ -192,7 +192,7 @@ void read_stream(const Cursor& at, const SystemPart& system, const DataUse& use,
     if (!plant) expect_bounded(at, system.model.W, "W");
     expect_bounded(at, system.model.V, "V");
   }
-  if (const auto faults = at.find("faults"); faults && !system.formulas)
+  if (const auto faults = at.find("faults"); faults && (!system.formulas || system.model.nonlinear))
     read_faults(*faults, system, spec, written_faults, context.warnings);
   if (const auto additive = at.find("additive_faults"); additive && !system.formulas)
     AdditiveFaultReader(spec, system.sizes.faults, context.warnings).read(*additive);

@@ -100,6 +100,9 @@ bool FaultReader::read_mode_fault(const Cursor& at, Fault& fault) {
               "the mode tells what is different; leave \"mode\" out to describe another fault")) {
     return false;
   }
+  if (system_.formulas && !refuse(at, {"actuator", "sensor"}, "is for linear systems",
+                                  "write what is different into the formulas of a mode"))
+    return false;
   const auto mode = find_mode(*at.find("mode"));
   if (!mode) return false;
   const std::size_t before = at.problems().met();
@@ -126,6 +129,10 @@ bool FaultReader::read_mode_fault(const Cursor& at, Fault& fault) {
 }
 
 bool FaultReader::read_outside_fault(const Cursor& at, Fault& fault) {
+  if (system_.formulas) {
+    at.error("names no mode", "faults of systems by formulas are modes: {\"mode\": ...}");
+    return false;
+  }
   fault.spec.name = "outside the bank";
   if (const auto name = at.find("name")) fault.spec.name = read_line(*name, max_name).value_or("");
   const bool described = std::any_of(mode_keys().begin(), mode_keys().end(),

@@ -11,7 +11,7 @@ namespace cordon::json {
 namespace {
 
 using Kind = Value::Kind;
-constexpr std::size_t max_modes = 1000;
+constexpr std::size_t max_modes = 1000, max_formula_modes = 50;
 constexpr std::size_t max_copied = 50'000'000;  // numbers in all copies of the nominal model
 
 std::size_t entries(const LineForm& X) {
@@ -145,6 +145,7 @@ Model model_of(const WrittenMode& mode, const Model& nominal) {
     model.linear.Dv = beside(model.linear.Dv, *mode.additive->Fy);
     model.V = cartesian_product(model.V, mode.additive->f);
   }
+  if (model.nonlinear) return model;
   if (mode.actuator) model.linear.actuator = *mode.actuator;
   if (mode.sensor) model.linear.sensor = *mode.sensor;
   model.linear = with_exact_effectiveness_applied(std::move(model.linear));
@@ -223,19 +224,25 @@ void read_modes(const Cursor& system, SystemPart& part, std::vector<std::string>
     names.take_default(part.nominal);
   }
   const auto list = system.find("modes");
-  const std::string form = "a list of modes: [{\"name\": ..., \"actuator\": [...]}]";
+  const std::string form = part.formulas
+                               ? "a list of modes: [{\"name\": ..., \"parameters\": {...}}]"
+                               : "a list of modes: [{\"name\": ..., \"actuator\": [...]}]";
   if (list && list->expect(Kind::array, form) &&
-      expect_moderate(*list, part.model, max_modes, "modes")) {
+      expect_moderate(*list, part.model, part.formulas ? max_formula_modes : max_modes, "modes")) {
     for (std::size_t i = 0; i < list->size(); ++i) {
       const Cursor at = list->item(i);
-      std::vector<std::string> keys = mode_keys();
+      std::vector<std::string> keys = part.formulas ? formula_mode_keys() : mode_keys();
       keys.insert(keys.begin(), "name");
-      if (!at.expect_keys(keys, "key of a mode", "{\"name\": ..., \"actuator\": [...]}")) continue;
+      if (!at.expect_keys(keys, "key of a mode",
+                          part.formulas ? "{\"name\": ..., \"parameters\": {...}}"
+                                        : "{\"name\": ..., \"actuator\": [...]}"))
+        continue;
       const auto name_at = at.need("name", "every mode has a name of its own");
       const auto name = name_at ? read_line(*name_at, max_name) : std::nullopt;
       if (name) names.take(*name_at, *name);
       if (!part.good) continue;
-      auto mode = read_mode(at, part, warnings);
+      auto mode =
+          part.formulas ? read_formula_mode(at, system, part) : read_mode(at, part, warnings);
       if (!name || !mode) continue;
       mode->name = *name;
       part.modes.push_back({*name, model_of(*mode, part.model)});

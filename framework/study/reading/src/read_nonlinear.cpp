@@ -387,11 +387,11 @@ SystemPart NonlinearReader::read(const PlantReader& read_plant) {
   part_.labels = read_labels(system_, {sizes.states, sizes.inputs, sizes.outputs,
                                        of(Symbol::disturbance), of(Symbol::noise), 0});
   if (!plant) name_labels();
-  if (const auto at = system_.find("nominal"))
-    part_.nominal = read_line(*at, max_name).value_or(part_.nominal);
-  part_.good = part_.modes_good = system_.problems().met() == before_ && model_.f && model_.g;
+  part_.good = system_.problems().met() == before_ && model_.f && model_.g;
+  model_.parameters = std::ssize(ranges(Symbol::state));
   if (part_.good) part_.model.nonlinear = std::make_shared<const NonlinearModel>(std::move(model_));
   part_.formulas = std::move(written_);
+  read_modes(system_, part_, warnings_);
   return std::move(part_);
 }
 

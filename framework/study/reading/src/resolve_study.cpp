@@ -163,8 +163,23 @@ Json to_json(const Box& box) {
   return list;
 }
 
+/// Formulas, parameters and sets of a mode, whether or not they are those of the system.
+void add_formula_mode(Json& object, const WrittenMode& mode) {
+  Json whole;
+  add_formulas(whole, *mode.formulas);
+  for (const char* key : {"parameters", "f", "g"})
+    if (whole.contains(key)) object[key] = whole[key];
+  const auto set = [&](const char* key, const LineForm& of_model) {
+    const auto as_written = mode.formulas->sets.find(key);
+    object[key] = to_json(as_written == mode.formulas->sets.end() ? of_model : as_written->second);
+  };
+  set("W", mode.system->W);
+  set("V", mode.system->V);
+}
+
 /// The keys of a mode, without its name.
 void add(Json& object, const WrittenMode& mode) {
+  if (mode.formulas) return add_formula_mode(object, mode);
   if (mode.actuator) object["actuator"] = to_json(*mode.actuator);
   if (mode.sensor) object["sensor"] = to_json(*mode.sensor);
   if (mode.additive) {

@@ -179,6 +179,17 @@ std::array<Json, 2> nonlinear_systems(const Json& names, const Json& sampling_ti
                {"f", described(formulas, "the next state, one formula per state")},
                {"g", described(formulas, "the outputs")},
                {"invariants", described(formulas, "are 0 for the true state at all times")}};
+  const Json by_state{{"type", "object"},
+                      {"additionalProperties", text(formulas::longest_formula)}};
+  written["modes"] = described(
+      list_of(object({{"name", text(200)},
+                      {"f", {{"anyOf", {formulas, described(by_state, "by the names of states")}}}},
+                      {"g", formulas},
+                      {"parameters", parameters},
+                      {"W", set},
+                      {"V", set}},
+                     {"name"})),
+      "what else the plant can be: what is not there is that of the system");
   written.update(common);
   Json of_plant{{"plant", described(reference("plant"), "whose formulas they are")}};
   of_plant.update(common);

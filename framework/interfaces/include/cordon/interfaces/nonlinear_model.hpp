@@ -20,6 +20,9 @@ struct NonlinearModel {
   std::shared_ptr<const formulas::Function> g;
   Index invariants = 0;  ///< rows of h
   Index inputs = 0;
+  /// The last states, which are parameters of the formulas: they keep their values as long as the
+  /// mode lasts.
+  Index parameters = 0;
   /// X_A, assumed to hold the state at all times; none: Rⁿ.
   std::optional<LineForm> admissible = {};
   /// Whether states are assumed to lie where all formulas are defined.

@@ -141,6 +141,8 @@ struct DiagnoserEntry {
   /// It tells modes apart, and is of no use for one alone. False: it finds additive faults, and is
   /// refused where there is no F.
   bool needs_modes = true;
+  /// Its exclusions hold for models by formulas, too; refused otherwise.
+  bool takes_nonlinear = false;
 
   std::vector<Diagnostic> refusals(const DiagnoserContext& context, const Registry& registry) const;
 };

@@ -49,6 +49,7 @@ struct Additive {
   LineForm f;
 };
 
+struct WrittenFormulas;
 /// A mode, or a fault outside the bank, as it is written: what differs from the nominal model.
 struct WrittenMode {
   std::string name;
@@ -56,6 +57,8 @@ struct WrittenMode {
   std::optional<Additive> additive;
   std::optional<LineForm> W, V;
   std::optional<Model> system;
+  /// Of a nonlinear mode, whose model is `system`: all of its formulas.
+  std::shared_ptr<const WrittenFormulas> formulas;
 };
 
 /// The model that a mode stands for: `system` or the nominal one, W and V exchanged, the additive
@@ -125,6 +128,11 @@ SystemPart read_mode_system(const Cursor& system, const SystemPart& nominal,
 
 /// The keys that describe what is different in a mode.
 const std::vector<std::string>& mode_keys();
+/// A mode of a nonlinear system: formulas and parameters by name take the place of the nominal
+/// ones.
+const std::vector<std::string>& formula_mode_keys();
+std::optional<WrittenMode> read_formula_mode(const Cursor& at, const Cursor& system,
+                                             const SystemPart& nominal);
 /// What these keys say, nothing if anything is wrong with them. The name is left to the caller.
 /// `nominal` is good.
 std::optional<WrittenMode> read_mode(const Cursor& mode, const SystemPart& nominal,
