@@ -26,7 +26,7 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 MixedIntegerProgram program(const Matrix& A, const Vector& row_lower, const Vector& row_upper,
                             const Vector& cost, const Vector& lower, const Vector& upper,
                             std::vector<bool> integer) {
-  MixedIntegerProgram p{cost, {}, row_lower, row_upper, lower, upper, std::move(integer)};
+  MixedIntegerProgram p{{cost, {}, row_lower, row_upper, lower, upper}, std::move(integer)};
   for (Index i = 0; i < A.rows(); ++i) {
     for (Index j = 0; j < A.cols(); ++j) p.entries.push_back({i, j, A(i, j)});
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solvers/sparse_program.hpp"
+#include "cordon/solvers/sparse_program.hpp"
 
 #include <random>
 

@@ -6,11 +6,10 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/solvers/mip.hpp"
-#include "glpk_environment.hpp"
+#include "glpk_program.hpp"
 
 namespace cordon {
 
-using glpk::bound_type;
 using glpk::guarded;
 
 namespace {
@@ -21,33 +20,11 @@ void require(bool fine, Errc code, const char* what) {
   if (!fine) throw Error(code, std::string("mixed-integer program: ") + what);
 }
 
-bool ordered(const Vector& lower, const Vector& upper) {
-  return !lower.hasNaN() && !upper.hasNaN() && (lower.array() <= upper.array()).all() &&
-         (lower.array() < infinity).all() && (upper.array() > -infinity).all();
-}
-
 void check(const MixedIntegerProgram& p, const MipOptions& options) {
-  const Index n = p.cost.size(), m = p.row_lower.size();
-  require(p.lower.size() == n && p.upper.size() == n && static_cast<Index>(p.integer.size()) == n &&
-              p.row_upper.size() == m,
-          Errc::dimension, "the sizes of cost, bounds and kinds differ");
-  require(n > 0, Errc::dimension, "no column");
-  require(m <= 1'000'000 && n <= 1'000'000 && p.entries.size() <= 50'000'000, Errc::dimension,
-          "more than a million rows or columns");
-  require(p.cost.allFinite(), Errc::not_finite, "a NaN or infinite cost");
-  require(ordered(p.row_lower, p.row_upper) && ordered(p.lower, p.upper), Errc::not_finite,
-          "a NaN or crossed bound");
-  std::vector<std::pair<Index, Index>> places;
-  places.reserve(p.entries.size());
-  for (const auto& [row, col, value] : p.entries) {
-    require(row >= 0 && row < m && col >= 0 && col < n, Errc::dimension,
-            "an entry outside of the matrix");
-    require(std::isfinite(value), Errc::not_finite, "a NaN or infinite coefficient");
-    places.emplace_back(row, col);
-  }
-  std::sort(places.begin(), places.end());
-  require(std::adjacent_find(places.begin(), places.end()) == places.end(), Errc::invalid,
-          "two entries at one place");
+  glpk::check(p, "mixed-integer program");
+  const Index n = p.cost.size();
+  require(static_cast<Index>(p.integer.size()) == n, Errc::dimension,
+          "the sizes of cost and kinds differ");
   for (Index j = 0; j < n; ++j) {
     if (!p.integer[static_cast<std::size_t>(j)]) continue;
     require(std::isfinite(p.lower[j]) && std::isfinite(p.upper[j]) &&
@@ -84,21 +61,6 @@ bool satisfies(const MixedIntegerProgram& p, const Vector& x) {
   }
   return true;
 }
-
-/// The program as GLPK takes it, indices from 1.
-struct Arrays {
-  std::vector<int> row{0}, col{0};
-  std::vector<double> value{0};
-
-  explicit Arrays(const MixedIntegerProgram& p) {
-    for (const auto& entry : p.entries) {
-      if (entry.value == 0) continue;
-      row.push_back(static_cast<int>(entry.row) + 1);
-      col.push_back(static_cast<int>(entry.col) + 1);
-      value.push_back(entry.value);
-    }
-  }
-};
 
 /// What the search tells while it runs.
 struct Search {
@@ -141,22 +103,12 @@ void call_back(glp_tree* tree, void* info) {
   if (search.stopped) glp_ios_terminate(tree);
 }
 
-void load(glp_prob* problem, const MixedIntegerProgram& p, const Arrays& arrays) {
-  const int m = static_cast<int>(p.row_lower.size()), n = static_cast<int>(p.cost.size());
-  glp_set_obj_dir(problem, GLP_MIN);
-  if (m > 0) glp_add_rows(problem, m);
-  glp_add_cols(problem, n);
-  for (int i = 0; i < m; ++i) {
-    glp_set_row_bnds(problem, i + 1, bound_type(p.row_lower[i], p.row_upper[i]), p.row_lower[i],
-                     p.row_upper[i]);
+void load(glp_prob* problem, const MixedIntegerProgram& p, const glpk::Entries& entries) {
+  glpk::load(problem, p, entries);
+  for (Index j = 0; j < p.cost.size(); ++j) {
+    if (p.integer[static_cast<std::size_t>(j)])
+      glp_set_col_kind(problem, static_cast<int>(j) + 1, GLP_IV);
   }
-  for (int j = 0; j < n; ++j) {
-    glp_set_col_bnds(problem, j + 1, bound_type(p.lower[j], p.upper[j]), p.lower[j], p.upper[j]);
-    glp_set_obj_coef(problem, j + 1, p.cost[j]);
-    if (p.integer[static_cast<std::size_t>(j)]) glp_set_col_kind(problem, j + 1, GLP_IV);
-  }
-  glp_load_matrix(problem, static_cast<int>(arrays.value.size()) - 1, arrays.row.data(),
-                  arrays.col.data(), arrays.value.data());
   glp_scale_prob(problem, GLP_SF_AUTO);
 }
 
@@ -200,7 +152,7 @@ MipSolution solve(const MixedIntegerProgram& program, const MipOptions& options)
         1e3 * (options.time_limit - std::chrono::duration<double>(Clock::now() - begin).count());
     return static_cast<int>(std::clamp(left, 1.0, 1e9));
   };
-  const Arrays arrays(program);
+  const glpk::Entries entries(program);
   Search search{&options, {}, infinity, -infinity, 0, false, nullptr};
   const bool start = options.start && satisfies(program, *options.start);
   if (start) {
@@ -212,7 +164,7 @@ MipSolution solve(const MixedIntegerProgram& program, const MipOptions& options)
   const bool whole = guarded([&] {
     glp_term_out(GLP_OFF);
     glp_prob* const problem = glp_create_prob();
-    load(problem, program, arrays);
+    load(problem, program, entries);
     code = options.time_limit > 0 ? relax(problem, milliseconds_left()) : GLP_ETMLIM;
     relaxed = glp_get_status(problem);
     if (code == 0 && relaxed == GLP_OPT) {

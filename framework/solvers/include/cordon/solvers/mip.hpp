@@ -9,22 +9,12 @@
 #include <optional>
 #include <vector>
 
-#include "cordon/core/types.hpp"
+#include "cordon/solvers/sparse_program.hpp"
 
 namespace cordon {
 
-/// minimise costᵀ x subject to row_lower ≤ A x ≤ row_upper, lower ≤ x ≤ upper, x_j a whole number
-/// where `integer` says so. Rows, columns and coefficients may be infinite only as bounds: -inf
-/// below, +inf above.
-struct MixedIntegerProgram {
-  struct Entry {
-    Index row, col;
-    double value;
-  };
-  Vector cost;
-  std::vector<Entry> entries;  ///< of A, each place at most once
-  Vector row_lower, row_upper;
-  Vector lower, upper;
+/// A sparse program with x_j a whole number where `integer` says so.
+struct MixedIntegerProgram : SparseProgram {
   std::vector<bool> integer;  ///< such columns have bounds that are whole
 };
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "cordon/solvers/sparse_program.hpp"
 #include "cordon/study/identify.hpp"
-#include "solvers/sparse_program.hpp"
 
 namespace cordon::identification {
 

@@ -8,8 +8,8 @@
 
 namespace cordon {
 
-/// minimise costᵀ x subject to row_lower ≤ A x ≤ row_upper, lower ≤ x ≤ upper; bounds may be
-/// infinite.
+/// minimise costᵀ x subject to row_lower ≤ A x ≤ row_upper, lower ≤ x ≤ upper. Infinite may be
+/// bounds only: -inf below, +inf above.
 struct SparseProgram {
   struct Entry {
     Index row, col;
@@ -22,8 +22,8 @@ struct SparseProgram {
 };
 
 /// By the dual simplex method, what is redundant taken out before; otherwise where that fails. `y`:
-/// a multiplier per row, by how much the optimum grows with the row's bound. Throws Errc::dimension
-/// and Errc::not_finite for broken programs.
+/// a multiplier per row, by how much the optimum grows with the row's bound. Throws
+/// Errc::dimension, Errc::not_finite and Errc::invalid for broken programs.
 LinearProgram::Solution minimize(const SparseProgram& program, double seconds);
 
 }  // namespace cordon
