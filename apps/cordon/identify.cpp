@@ -51,13 +51,13 @@ Scaled scale_from(const std::string& name) {
   throw Error(Errc::invalid, "--scale takes both, W, V or each, not \"" + name + "\"");
 }
 
-/// "70%" or "70": 0.7.
+/// "70%": 0.7. A number alone could be either.
 double share_from(const std::string& text) {
   double percent = 0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, percent);
-  const bool is_number = error == std::errc() && (rest == end || std::string(rest, end) == "%");
-  if (!is_number || !(percent > 0) || percent > 100)
+  const bool is_share = error == std::errc() && std::string(rest, end) == "%";
+  if (!is_share || !(percent > 0) || percent > 100)
     throw Error(Errc::invalid,
                 "--train takes a share of the samples, 70% for example, not \"" + text + "\"");
   return percent / 100;
@@ -305,7 +305,11 @@ Exit identify(const Program& program, const IdentifyArguments& arguments) {
          "\": where a fault is in them, its bounds are no bounds of disturbances");
   if (!arguments.write.empty()) require_writable(study);
   const std::vector<Sample> samples = samples_of(study);
-  if (samples.empty()) throw Error(Errc::invalid, "the data hold no sample");
+  if (samples.empty()) {
+    throw Error(
+        Errc::invalid,
+        "the data hold no sample: bounds are identified from recorded or simulated outputs");
+  }
   const std::string why = why_not_identified(study.model);
   if (!why.empty() || !arguments.pipeline.empty())
     return searched(study, samples, arguments, registry, why);

@@ -15,7 +15,8 @@ namespace {
 using Status = BoundFactors::Status;
 
 constexpr Index longest_record = 1000;
-constexpr double patience = 5;  ///< for each question
+constexpr double would_do = 1 + 1e-6;  ///< a factor up to this counts as 1: solvers round
+constexpr double patience = 5;         ///< for each question
 
 std::string alone(const char* name, const BoundFactors& factors) {
   if (factors.status == Status::none) return fmt::format("{} alone: never", name);
@@ -41,14 +42,15 @@ std::string needed_bounds_text(const Study& study, Index k) {
   if (both.status == Status::failed) return "";
   if (both.status == Status::none) {
     return fmt::format(
-        "No W and V explain the outputs up to {}, however large: the system or X0 is "
-        "wrong\n",
+        "The solver finds no W and V that explain the outputs up to {}, however large: "
+        "look at the system and X0\n",
         until);
   }
-  if (both.cost <= 1) {
+  if (both.cost <= would_do) {
     return fmt::format(
-        "The study's W and V do explain the outputs up to {}: what is wrong is what "
-        "the pipeline assumes beside them, such as its initial or admissible set\n",
+        "The solver finds a trajectory with the study's W and V that explains the "
+        "outputs up to {}: look at what the pipeline assumes beside them, such as its "
+        "initial or admissible set\n",
         until);
   }
   return fmt::format(

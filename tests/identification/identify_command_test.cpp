@@ -65,7 +65,7 @@ TEST_CASE("a run that ends with an empty estimate tells which bounds would have 
   narrow["system"]["W"] = study()["system"]["W"];
   const Run elsewhere(narrow, walk);
   CAPTURE(elsewhere.outcome.out);
-  CHECK(elsewhere.outcome.out.find("such as its initial or admissible set") != std::string::npos);
+  CHECK(elsewhere.outcome.out.find("initial or admissible set") != std::string::npos);
 }
 
 TEST_CASE("bounds of a part are tried on all samples") {
@@ -136,8 +136,8 @@ TEST_CASE("what estimates refute is no more than what the program proves") {
 
 TEST_CASE("options that are wrong and studies without such bounds are refused") {
   const Run run(study(), walk);
-  for (const char* wrong :
-       {"--train 0%", "--train 101%", "--train most", "--train 70%%", "--scale X", "--train nan"}) {
+  for (const char* wrong : {"--train 0%", "--train 101%", "--train most", "--train 70%%",
+                            "--scale X", "--train nan", "--train 0.5", "--train 50"}) {
     CAPTURE(std::string(wrong));
     CHECK(run(std::string("identify s.json ") + wrong).code == 2);
   }
