@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Modes of systems by formulas: read, simulated, told apart by a bank.
+#include <cmath>
 #include <fstream>
 #include <string>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "cordon/study/data.hpp"
+#include "study/checks/assumption_check.hpp"
 #include "study/study_run.hpp"
 
 using Json = nlohmann::ordered_json;
@@ -140,6 +143,43 @@ TEST_CASE("a leak of unknown size is a mode: isolated, and its size enclosed") {
     for (const Json& event : pipeline["summary"]["events"])
       isolated = isolated || (event["what"] == "isolated" && event["mode"] == "leak_1");
     CHECK(isolated);
+  }
+}
+
+TEST_CASE("where a mode begins its parameters are new, which excuses and accuses nothing") {
+  Json json = with_banks(tanks());
+  json["system"]["parameters"]["l1"] = {{"lower", 0}, {"upper", 0}};
+  json["system"]["modes"][0]["parameters"]["l1"] = {{"lower", 0.006}, {"upper", 0.02}};
+  json["data"]["simulate"]["x0"] = {4.2, 5.1, 0};
+  json["data"]["simulate"]["faults"] = {{{"mode", "leak_1"}, {"from", 10}}};
+  const Scratch scratch;
+  cordon::Registry registry;
+  registry.load({{CORDON_BINARY_DIR "/lib/cordon/plugins-v1"}});
+  const cordon::Study study = cordon::read_study(scratch.write("s.json", json.dump()), registry);
+  cordon::detail::PipelineAssumptions assumed;
+  assumed.exact_data = true;
+  cordon::detail::AssumptionCheck check(study, assumed);
+  check.begin_run(0);
+  const auto data = cordon::open_data(study);
+  while (auto record = data->next()) {
+    if (record->sample.k == 20)  // an output that the bounds miss in its last digit
+      record->sample.y[0] = std::nextafter((*record->truth)[0] + 0.05, 100);
+    check.step(*record);
+  }
+  CHECK(check.excuses_by_rounding(20, true, 0));
+}
+
+TEST_CASE("a mode whose formulas are not defined is never excluded, and does not end the others") {
+  Json study = with_banks(tanks());
+  study["system"]["modes"].push_back(
+      {{"name", "odd"}, {"f", {{"x1", "x1 + k1*u1 - a1*sqrt(x1 - 4.2) + w1"}}}});
+  const Run run(study);
+  CAPTURE(run.outcome.out);
+  REQUIRE(run.outcome.code == 0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(excluded_at(run.pipeline(i), "odd") == -1);
+    CHECK(excluded_at(run.pipeline(i), "healthy") == -1);
+    CHECK(excluded_at(run.pipeline(i), "blocked") >= 0);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/tolerances.hpp"
+#include "cordon/interfaces/nonlinear_model.hpp"
 #include "cordon/solvers/exact_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "formula_equations.hpp"
@@ -110,6 +111,11 @@ bool earlier(const FailedAssumption& a, const std::optional<FailedAssumption>& b
   return !b || a.from() < b->from();
 }
 
+/// Parameters that are states are those of the mode that begins: no disturbance leads to them.
+bool has_new_parameters(const Model& model, bool begins) {
+  return begins && model.nonlinear && model.nonlinear->parameters > 0;
+}
+
 }  // namespace
 
 PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser,
@@ -185,7 +191,8 @@ bool AssumptionCheck::excuses_by_rounding(Index k, bool barely, Index since) {
     const Index time = now.sample.k;
     if (time > k || (other_ && other_->from() <= k)) break;
     const Index from = before ? mode_of(*before) : -1, shown = mode_of(now);
-    if (from >= 0 && contradicts_dynamics(bank_[from].model, *before, now)) {
+    const bool follows = from >= 0 && !has_new_parameters(bank_[from].model, from != shown);
+    if (follows && contradicts_dynamics(bank_[from].model, *before, now)) {
       if (leaves_W(bank_[from].model, *before, now)) return false;  // that is no rounding
       fail(What::W_exactly, time - 1, from);
     } else if (shown >= 0 && contradicts_outputs(bank_[shown].model, now)) {
