@@ -8,6 +8,7 @@
 #include "cordon/formulas/parse.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
 #include "formula_parameters.hpp"
+#include "formula_sections.hpp"
 #include "nonlinear_keys.hpp"
 #include "study/reading/read_sets.hpp"
 
@@ -21,26 +22,6 @@ constexpr std::size_t longest_name = 60;  // bytes
 constexpr const char* box_form =
     "the set of all values it can take, for example {\"type\": \"box\", \"lower\": [...], "
     "\"upper\": [...]}";
-
-/// What a name stands for.
-enum class Symbol { state, input, disturbance, noise, parameter };
-struct SymbolWords {
-  const char* key;   ///< of the list in the system
-  const char* noun;  ///< for people
-};
-constexpr std::array<SymbolWords, 5> words{{{"states", "a state"},
-                                            {"inputs", "an input"},
-                                            {"disturbances", "a disturbance"},
-                                            {"noises", "a noise"},
-                                            {"parameters", "a parameter"}}};
-
-/// The formulas of one key, and who may stand in them.
-struct Section {
-  const char* key;
-  std::vector<Symbol> variables;  ///< in the order of the function's
-  bool uses_time;
-  const char* form;
-};
 
 class NonlinearReader {
  public:
@@ -89,26 +70,6 @@ class NonlinearReader {
   NonlinearModel model_;
 };
 
-const Section& section_f() {
-  static const Section section{"f",
-                               {Symbol::state, Symbol::disturbance, Symbol::input},
-                               true,
-                               "one formula per state: x at the next time"};
-  return section;
-}
-const Section& section_g() {
-  static const Section section{"g",
-                               {Symbol::state, Symbol::noise, Symbol::input},
-                               true,
-                               "one formula per output, [\"x1 + v1\"] for example"};
-  return section;
-}
-const Section& section_h() {
-  static const Section section{
-      "invariants", {Symbol::state}, false, "formulas that are 0 for the true state at all times"};
-  return section;
-}
-
 /// Sizes and functions of a plant, whose variables are called x1, w1, u1, … in messages.
 void NonlinearReader::take(PlantSystem plant) {
   written_.plant = std::move(plant.spec);
@@ -125,21 +86,21 @@ void NonlinearReader::take(PlantSystem plant) {
 
 void NonlinearReader::take_name(const Cursor& at, const std::string& name, Symbol role) {
   if (const std::string why = formulas::why_no_name(name); !why.empty()) {
-    at.error(in_quotes(name) + " is no name for " + words[static_cast<std::size_t>(role)].noun +
-                 ": " + why,
+    at.error(in_quotes(name) + " is no name for " +
+                 symbol_words[static_cast<std::size_t>(role)].noun + ": " + why,
              "names are a letter, then letters, digits and _");
     return;
   }
   const auto [first, fresh] = known_.emplace(name, role);
   if (!fresh) {
     at.error("repeats the name " + in_quotes(name) + " of " +
-                 words[static_cast<std::size_t>(first->second)].noun,
+                 symbol_words[static_cast<std::size_t>(first->second)].noun,
              "names are unique over all lists");
   }
 }
 
 void NonlinearReader::read_variables(Symbol role) {
-  const SymbolWords& word = words[static_cast<std::size_t>(role)];
+  const SymbolWords& word = symbol_words[static_cast<std::size_t>(role)];
   const auto at = role == Symbol::state
                       ? system_.need("states", "the names of the states: [\"x1\", \"x2\"]")
                       : system_.find(word.key);
@@ -205,7 +166,7 @@ formulas::Vocabulary NonlinearReader::vocabulary(const Section& section,
                          std::ranges::find(section.variables, role) != section.variables.end();
     if (allowed) continue;
     made.known.erase(name);
-    made.refused.emplace(name, std::string(words[static_cast<std::size_t>(role)].noun) +
+    made.refused.emplace(name, std::string(symbol_words[static_cast<std::size_t>(role)].noun) +
                                    " cannot stand in " + section.key);
   }
   if (!section.uses_time) {
@@ -270,7 +231,7 @@ void NonlinearReader::warn_of_unused(const formulas::Function& function, Symbol 
     for (Index row = 0; row < function.rows(); ++row)
       used = used || function.depends_on(row, variable);
     if (used) continue;
-    const SymbolWords& word = words[static_cast<std::size_t>(role)];
+    const SymbolWords& word = symbol_words[static_cast<std::size_t>(role)];
     warnings_.push_back(child(child(system_.pointer(), word.key), static_cast<std::size_t>(i)) +
                         ": " + in_quotes(names(role)[static_cast<std::size_t>(i)]) +
                         " stands in no formula");
@@ -302,7 +263,7 @@ void NonlinearReader::extend(const char* key, Symbol role, LineForm& set) {
 }
 
 void NonlinearReader::read_set_of(const char* key, Symbol role, LineForm& out) {
-  const SymbolWords& word = words[static_cast<std::size_t>(role)];
+  const SymbolWords& word = symbol_words[static_cast<std::size_t>(role)];
   if (!system_.find(key) && written(role) == 0 && !written_.plant) {
     out = make_point(Vector(0));
     extend(key, role, out);
