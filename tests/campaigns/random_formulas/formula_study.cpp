@@ -2,9 +2,10 @@
 #include "formula_study.hpp"
 
 #include <cmath>
-#include <random>
 #include <string>
 #include <vector>
+
+#include "campaigns/draw.hpp"
 
 namespace cordon::campaigns {
 
@@ -12,20 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Strings = std::vector<std::string>;
-
-/// Draws that do not depend on the standard library.
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : engine_(seed) {}
-
-  std::size_t below(std::size_t count) { return engine_() % count; }
-  bool one_in(std::size_t count) { return below(count) == 0; }
-  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-52 - 1; }
-  const std::string& among(const Strings& list) { return list[below(list.size())]; }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 std::string text(double x) {
   const std::string digits = std::to_string(std::round(1000 * x) / 1000);
@@ -38,13 +25,13 @@ class FormulaStudy {
       : draw_(0x9e3779b97f4a7c15 * (number + 1)), number_(number) {}
 
   Json make() {
-    const auto count = [this](std::size_t most) { return 1 + draw_.below(most); };
+    const auto count = [this](std::size_t most) { return 1 + draw_.place(most); };
     name("x", count(3), states_);
     name("w", draw_.one_in(5) ? 0 : count(2), disturbances_);
     name("v", draw_.one_in(8) ? 0 : count(2), noises_);
     name("u", draw_.one_in(2) ? 0 : 1, inputs_);
     for (std::size_t i = 0; i < states_.size(); ++i) {
-      units_.push_back(draw_.one_in(6) ? std::pow(10.0, static_cast<double>(draw_.below(9)) - 4)
+      units_.push_back(draw_.one_in(6) ? std::pow(10.0, static_cast<double>(draw_.place(9)) - 4)
                                        : 1.0);
     }
     Json study{{"cordon", 1}, {"title", "random formulas " + std::to_string(number_)}};
@@ -62,7 +49,7 @@ class FormulaStudy {
 
   /// A state in units of its own.
   std::string state() {
-    const std::size_t i = draw_.below(states_.size());
+    const std::size_t i = draw_.place(states_.size());
     return units_[i] == 1 ? states_[i] : "(" + states_[i] + "/" + units_text(i) + ")";
   }
   std::string units_text(std::size_t i) const {
@@ -77,7 +64,7 @@ class FormulaStudy {
       return draw_.one_in(12) ? "0.1*k" : state();
     }
     const std::string a = formula(depth - 1, others);
-    switch (draw_.below(18)) {
+    switch (draw_.place(18)) {
       case 0:
       case 1:
         return "(" + a + " + " + formula(depth - 1, others) + ")";
@@ -95,7 +82,7 @@ class FormulaStudy {
       case 8:
         return "sqrt(" + a + " + 1.5)";
       case 9:
-        return "(" + a + ")^" + std::to_string(2 + draw_.below(2));
+        return "(" + a + ")^" + std::to_string(2 + draw_.place(2));
       case 10:
         return "max(" + a + ", " + formula(depth - 1, others) + ")";
       case 11:
@@ -128,9 +115,9 @@ class FormulaStudy {
 
   std::vector<double> radii(std::size_t count) {
     static const double sizes[] = {0, 1e-9, 1e-3, 1e-2, 0.1};
-    const double usual = sizes[draw_.below(5)];
+    const double usual = sizes[draw_.place(5)];
     std::vector<double> all(count, usual);
-    if (count > 1 && draw_.one_in(4)) all[draw_.below(count)] = 0;
+    if (count > 1 && draw_.one_in(4)) all[draw_.place(count)] = 0;
     return all;
   }
 
@@ -145,7 +132,7 @@ class FormulaStudy {
       if (!disturbances_.empty() && draw_.one_in(2)) next += " + " + draw_.among(disturbances_);
       system["f"].push_back(units_[i] == 1 ? next : units_text(i) + "*(" + next + ")");
     }
-    for (std::size_t i = 0; i < 1 + draw_.below(2); ++i) {
+    for (std::size_t i = 0; i < 1 + draw_.place(2); ++i) {
       std::string output = draw_.one_in(3) ? state() : formula(2, with(noises_));
       if (!noises_.empty() && !draw_.one_in(4)) output += " + " + draw_.among(noises_);
       system["g"].push_back(output);
@@ -196,15 +183,15 @@ class FormulaStudy {
       for (const std::string& method : methods) {
         Json observer{{"type", "nonlinear"},
                       {"method", method},
-                      {"max_generators", states_.size() + 4 + draw_.below(20)}};
+                      {"max_generators", states_.size() + 4 + draw_.place(20)}};
         if (type == "constrained_zonotope" || type == "line_zonotope") {
-          observer["max_constraints"] = 1 + draw_.below(8);
+          observer["max_constraints"] = 1 + draw_.place(8);
         }
         if (draw_.one_in(3)) observer["contraction"] = false;
         if (draw_.one_in(3) && method != "interval" && method != "natural")
           observer["box"] = false;
         else if (draw_.one_in(3) && method != "relaxation")
-          observer["parts"] = 2 + draw_.below(6);
+          observer["parts"] = 2 + draw_.place(6);
         add(list, type, draw_.one_in(2) ? "outward" : "nominal", observer);
       }
     }
@@ -212,7 +199,7 @@ class FormulaStudy {
       add(list, "zonotope", "nominal",
           {{"type", "nonlinear_strips"},
            {"variant", variant},
-           {"max_generators", states_.size() + 4 + draw_.below(20)}});
+           {"max_generators", states_.size() + 4 + draw_.place(20)}});
     }
     return list;
   }
