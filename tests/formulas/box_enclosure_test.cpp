@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "cordon/formulas/parse.hpp"
+#include "compiled.hpp"
 #include "oracle.hpp"
 
 using namespace cordon;
@@ -11,23 +11,6 @@ using namespace cordon::formulas;
 using namespace cordon::test;
 
 namespace {
-
-std::shared_ptr<const Function> compiled(const std::vector<std::string>& variables,
-                                         const std::vector<std::string>& formulas,
-                                         Index differentiated) {
-  auto graph = std::make_shared<Graph>(variables);
-  Vocabulary vocabulary;
-  for (Index i = 0; i < graph->variables(); ++i)
-    vocabulary.known.emplace(graph->name(static_cast<int>(i)), graph->variable(i));
-  std::vector<FormulaError> errors;
-  std::vector<int> rows;
-  for (const std::string& formula : formulas) {
-    const auto made = parse(formula, *graph, vocabulary, errors);
-    REQUIRE_MESSAGE(made, formula);
-    rows.push_back(made->node());
-  }
-  return std::make_shared<const Function>(graph, rows, differentiated, 2);
-}
 
 const std::vector<std::string> predator_prey = {"x1*(3 - x1/7 - 4*x2/(4 + x1))",
                                                 "x2*(-2 + 3*x1/(4 + x1))"};

@@ -58,6 +58,12 @@ class BoxEnclosure {
   /// different paths may not.)
   Interval range(Index row) const;
 
+  /// Bounds of F_row(z) - slope · z over the box, as those of `range`.
+  Interval deviation(Index row, const Eigen::RowVectorXd& slope) const;
+  /// The variable in which the row is farthest from affine over the box: the largest rad [J]_i r_i;
+  /// -1: it is affine with constant slopes.
+  Index most_bent(Index row) const;
+
   /// Σ over the rows of rad [J]_i, not rounded upward: by how much their slopes in z_i change over
   /// the box. Infinite where a derivative is not bounded, or a row that depends on z_i is not.
   double slope_spread(Index variable) const;
