@@ -67,7 +67,9 @@ std::string describe_samples(const Study& study, const DataOverview& data) {
 
 std::string describe_data(const Study& study, const DataOverview& data) {
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
-    const std::string by = simulate->plant ? " by " + simulate->plant->type : "";
+    const std::string by = simulate->plant      ? " by " + simulate->plant->type
+                           : simulate->formulas ? " by formulas"
+                                                : "";
     const std::uint64_t first = simulate->seed,
                         last = first + static_cast<std::uint64_t>(simulate->seeds) - 1;
     const std::string seeds =

@@ -180,7 +180,8 @@ class ConsistencyBank final : public Diagnoser {
   ModeElimination elimination_;
   std::vector<std::shared_ptr<Observer>> observers_;
   std::vector<Enclosure> restarts_;  ///< from which modes begin anew; empty: they cannot
-  /// Whose formulas could not be enclosed any more: they stay possible until a reset.
+  /// Whose formulas could not be enclosed any more, or whose model is not proven for the states
+  /// that the mode allows: they stay possible until a reset.
   std::vector<char> lost_;
   Index since_ = 0;          ///< first sample of the estimates
   bool ended_ = false;       ///< no mode is left and none can begin anew
@@ -277,6 +278,7 @@ CORDON_COMPONENT(diagnoser, consistency_bank) {
         return std::make_unique<ConsistencyBank>(context, params);
       },
       false,
+      true,
       true,
       true});
 }

@@ -14,8 +14,8 @@
 namespace cordon::test {
 
 inline std::shared_ptr<const formulas::Function> compiled(const std::vector<std::string>& variables,
-                                         const std::vector<std::string>& formulas,
-                                         Index differentiated) {
+                                                          const std::vector<std::string>& formulas,
+                                                          Index differentiated) {
   auto graph = std::make_shared<formulas::Graph>(variables);
   formulas::Vocabulary vocabulary;
   for (Index i = 0; i < graph->variables(); ++i)

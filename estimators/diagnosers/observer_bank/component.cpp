@@ -6,6 +6,7 @@
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "diagnosers/observer_bank/observer_bank.hpp"
+#include "diagnosers/observer_bank/region_check.hpp"
 #include "gains/gain_certificate.hpp"
 #include "observers/observer_gain.hpp"
 #include "observers/observer_parameters.hpp"
@@ -225,7 +226,10 @@ std::vector<Diagnostic> check_observer_bank(const DiagnoserContext& context, con
   check_gains(context, params, problems);
   check_shapes(bank, params, problems);
   if (!problems.empty()) return problems;
-  return check_offline(bank, matrices_of(gains_of(context, params)), offline_options(params));
+  const std::vector<Matrix> gains = matrices_of(gains_of(context, params));
+  problems = check_offline(bank, gains, offline_options(params));
+  if (problems.empty()) problems = check_regions(bank, gains, offline_options(params));
+  return problems;
 }
 
 }  // namespace
@@ -242,7 +246,11 @@ CORDON_COMPONENT(diagnoser, observer_bank) {
         }
         return std::make_unique<ObserverBank>(context.bank, context.backend,
                                               options_of(context, params));
-      }});
+      },
+      false,
+      true,
+      false,
+      true});
 }
 
 }  // namespace cordon::estimators

@@ -58,11 +58,11 @@ class DeviationSearch {
 
   Deviation run(std::span<const Interval> box, std::size_t most_parts, double tolerance) {
     take(Variables(box.begin(), box.end()));
+    if (function_.function().is_affine(row_)) take_around_zero(box);
     while (parts_.size() < most_parts) {
       const std::size_t worst = part_that_reaches_farthest();
       const Interval& reached = parts_[worst].bounds;
-      const double gap =
-          std::max(reached.upper - attained_.upper, attained_.lower - reached.lower);
+      const double gap = std::max(reached.upper - attained_.upper, attained_.lower - reached.lower);
       if (gap <= tolerance * (attained_.upper - attained_.lower) || !bisect(worst)) break;
     }
     Interval bounds = parts_.front().bounds;
@@ -100,6 +100,19 @@ class DeviationSearch {
     take(std::move(lower));
     take(std::move(upper));
     return true;
+  }
+
+  /// Bounds of an affine row are as good over a larger box, but for the rounding of its value at
+  /// the centre, which is none at 0.
+  void take_around_zero(std::span<const Interval> box) {
+    Variables around(box.begin(), box.end());
+    for (Index i = 0; i < slope_.size(); ++i) {
+      const double size = around[as_size(i)].magnitude();
+      around[as_size(i)] = {-size, size};
+    }
+    function_.set_box(around);
+    Interval& bounds = parts_.front().bounds;
+    bounds = intersection(bounds, function_.deviation(row_, slope_));
   }
 
   void take(Variables box) {
@@ -141,8 +154,7 @@ class DeviationSearch {
 }  // namespace
 
 Deviation bound_deviation(BoxEnclosure& function, Index row, const Eigen::RowVectorXd& slope,
-                          std::span<const Interval> box, std::size_t most_parts,
-                          double tolerance) {
+                          std::span<const Interval> box, std::size_t most_parts, double tolerance) {
   return DeviationSearch(function, row, slope).run(box, most_parts, tolerance);
 }
 

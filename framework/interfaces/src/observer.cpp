@@ -7,6 +7,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/tolerances.hpp"
+#include "region.hpp"
 #include "sample_check.hpp"
 
 namespace cordon {
@@ -106,6 +107,7 @@ void Observer::start(std::optional<Enclosure> X0) {
   inconsistent_ = is_cut_to_nothing_ = false;
   inherited_ = last_inherited_ = Tightness::exact;
   left_out_.clear();
+  left_region_.clear();
   contradiction_.reset();
   times_ = {};
 }
@@ -289,6 +291,7 @@ Estimate Observer::step(const Sample& now) {
     before_ = now;
     return estimate;
   }
+  if (model_.region) expect_region(now);
   if (!before_)  // of other data
     std::erase_if(outlier_times_, [&](Index t) { return t >= now.k; });
   std::optional<Sample> used;
@@ -299,7 +302,22 @@ Estimate Observer::step(const Sample& now) {
   last_ = estimate.set;
   last_inherited_ = inherited_;
   before_ = used ? std::move(*used) : now;
+  if (model_.region)
+    left_region_ = detail::why_outside(*model_.region, last_->interval_hull(), now);
   return estimate;
+}
+
+Box Observer::predicted() {
+  if (!before_) return backend_->import(X0_ ? (*X0_)->line_form() : initial_set())->interval_hull();
+  if (!disturbance_.set) disturbance_ = backend_->import(model_.W);
+  return detail::predicted_hull(model_.linear, *last_, before_->u, *disturbance_);
+}
+
+void Observer::expect_region(const Sample& now) {
+  std::string why = before_ ? left_region_ : "";
+  if (why.empty() && model_.region->nonlinear_outputs && !present_outputs(now).empty())
+    why = detail::why_outside(*model_.region, predicted(), now);
+  if (!why.empty()) throw Error(Errc::not_enclosed, why);
 }
 
 void Observer::replace(Enclosure X) {
@@ -312,6 +330,8 @@ void Observer::replace(Enclosure X) {
   inconsistent_ = false;
   inherited_ = last_inherited_ = Tightness::exact;
   last_ = X;
+  if (model_.region)
+    left_region_ = detail::why_outside(*model_.region, X->interval_hull(), *before_);
   do_replace(X);
 }
 

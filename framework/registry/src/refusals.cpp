@@ -28,6 +28,19 @@ bool is_linear(const ModeBank& bank) {
   return std::ranges::all_of(bank.modes, [](const Mode& mode) { return mode.model.is_linear(); });
 }
 
+bool has_region(const ModeBank& bank) {
+  return std::ranges::any_of(bank.modes,
+                             [](const Mode& mode) { return mode.model.region.has_value(); });
+}
+
+Diagnostic for_all_states(const std::string& name, const std::string& suggestion) {
+  return {"/type",
+          fmt::format("\"{}\" takes models that hold for all states, and the system has a "
+                      "\"region\"",
+                      name),
+          suggestion};
+}
+
 Diagnostic no_modes(const std::string& kind) {
   return {"", "there are no modes to tell apart",
           "this " + kind + " needs at least two: describe the faults in /system/modes"};
@@ -66,6 +79,7 @@ std::vector<Diagnostic> DesignerEntry::refusals(const DesignerContext& context,
                                                 const Registry&) const {
   const ModeBank& bank = context.bank;
   if (!is_linear(bank)) return {for_linear_models(info.name, "")};
+  if (has_region(bank)) return {for_all_states(info.name, "")};
   std::vector<Diagnostic> problems;
   for (const Mode& mode : bank.modes) {
     if (!mode.model.linear.is_uncertain() && !mode.model.linear.has_ranges()) continue;
@@ -84,6 +98,8 @@ std::vector<Diagnostic> DiagnoserEntry::refusals(const DiagnoserContext& context
                                                  const Registry&) const {
   const ModeBank& bank = context.bank;
   if (!takes_nonlinear && !is_linear(bank)) return {for_linear_models(info.name, "")};
+  if (!takes_regions && has_region(bank))
+    return {for_all_states(info.name, "use \"consistency_bank\"")};
   std::vector<Diagnostic> problems;
   for (const Mode& mode : bank.modes) {
     if (takes_uncertainty || !mode.model.linear.is_uncertain()) continue;

@@ -116,6 +116,12 @@ Value to_mat(const ModeBank& bank, const Labels& labels) {
   const Mode& nominal = bank[bank.nominal];
   if (!nominal.model.is_linear())
     throw Error(Errc::unsupported, "a system by formulas has no form in MAT-files");
+  const auto has_region = [](const Mode& mode) { return mode.model.region.has_value(); };
+  if (std::ranges::any_of(bank.modes, has_region)) {
+    throw Error(
+        Errc::unsupported,
+        "a system with a \"region\" has no form in MAT-files, where it would hold everywhere");
+  }
   Struct system = matrices(nominal.model);
   system.set("F", matrix(nominal.model.linear.F))
       .set("U", to_mat(nominal.model.U))

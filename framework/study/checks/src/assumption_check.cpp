@@ -27,7 +27,7 @@ constexpr std::size_t most_kept = 10'000;
 
 bool is_by_plant(const Study& study) {
   const auto* simulate = std::get_if<SimulateSpec>(&study.data);
-  return simulate && (simulate->plant || simulate->made_plant);
+  return simulate && (simulate->plant || simulate->made_plant || simulate->formulas);
 }
 
 void collect(const ComponentSpec& spec, Index from, PipelineAssumptions& found) {

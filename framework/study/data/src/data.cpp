@@ -2,6 +2,7 @@
 #include "cordon/study/data.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "study/data/csv_source.hpp"
 #include "study/data/dropouts.hpp"
@@ -26,9 +27,21 @@ bool all_designed(const Study& study) {
                      [](const PipelineSpec& pipeline) { return pipeline.design() != nullptr; });
 }
 
+/// What the formulas of the data are asked to do, in place of the linear model.
+SimulateSpec by_formulas(SimulateSpec spec) {
+  for (FaultSpec& fault : spec.faults) {
+    if (fault.formulas) fault.model = *std::exchange(fault.formulas, std::nullopt);
+  }
+  return spec;
+}
+
 std::unique_ptr<DataSource> simulated(const Study& study, const SimulateSpec& spec, bool modes) {
   if (study.model.nonlinear)
     return std::make_unique<detail::FormulaSource>(study.model, spec, study.file.string(), modes);
+  if (spec.formulas) {
+    return std::make_unique<detail::FormulaSource>(*spec.formulas, by_formulas(spec),
+                                                   study.file.string(), modes);
+  }
   if (spec.made_plant)
     return std::make_unique<detail::PlantSource>(study.model, spec, study.file.string(), modes);
   const bool additive = study.model.linear.faults() > 0;

@@ -68,7 +68,9 @@ Json data() {
       Json{{"anyOf", {reference("vector"), reference("set")}}},
       "initial state, or a bounded set that it is drawn from; the centre of X0 by default");
   simulate["input"] = described(list_of(reference("signal")), "one signal per column of B");
-  simulate["plant"] = described(reference("plant"), "makes the data in place of the system");
+  simulate["plant"] =
+      described(Json{{"anyOf", {reference("plant"), reference("nonlinear_system")}}},
+                "makes the data in place of the system: a plant, or a system by formulas");
   simulate["faults"] =
       described(list_of(reference("fault")), "in the order of time, without overlap");
   simulate["additive_faults"] =

@@ -109,7 +109,7 @@ void AdditiveFaultReader::read_one(const Cursor& at) {
 }
 
 void AdditiveFaultReader::read(const Cursor& list) {
-  if (spec_.plant) {
+  if (spec_.plant || spec_.formulas) {
     list.error("cannot be simulated with a plant: F is about the linear model",
                "remove them, or the plant");
     return;
@@ -171,8 +171,7 @@ void refuse_what_is_linear(const Cursor& at) {
 /// What pipelines without a designer need: how long, with which inputs, and what goes wrong
 /// meanwhile.
 void read_stream(const Cursor& at, const SystemPart& system, const DataUse& use,
-                 const ComponentContext& context, SimulateSpec& spec,
-                 std::vector<WrittenFault>& written_faults) {
+                 const ComponentContext& context, SimulateSpec& spec, DataPart& part) {
   if (const auto steps =
           at.need("steps", "the number of steps: samples k = 0 ... steps" + use.reason()))
     spec.steps = read_integer(*steps, 1, max_steps).value_or(0);
@@ -187,13 +186,13 @@ void read_stream(const Cursor& at, const SystemPart& system, const DataUse& use,
   }
   read_input(at, system, use, spec.input);
   const auto plant = at.find("plant");
-  if (plant && !system.formulas) read_plant(*plant, system, spec, context);
+  if (plant && !system.formulas) part.plant = read_plant(*plant, system, spec, context);
   if (system.good) {
     if (!plant) expect_bounded(at, system.model.W, "W");
-    expect_bounded(at, system.model.V, "V");
+    if (!part.plant) expect_bounded(at, system.model.V, "V");
   }
   if (const auto faults = at.find("faults"); faults && (!system.formulas || system.model.nonlinear))
-    read_faults(*faults, system, spec, written_faults, context.warnings);
+    read_faults(*faults, system, spec, part, context.warnings);
   if (const auto additive = at.find("additive_faults"); additive && !system.formulas)
     AdditiveFaultReader(spec, system.sizes.faults, context.warnings).read(*additive);
   if (const auto dropouts = at.find("dropouts"))
@@ -220,8 +219,7 @@ void refuse_stream(const Cursor& at) {
 }
 
 SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const DataUse& use,
-                           const ComponentContext& context,
-                           std::vector<WrittenFault>& written_faults) {
+                           const ComponentContext& context, DataPart& part) {
   SimulateSpec spec;
   if (!at.expect_keys({"steps", "seed", "seeds", "noise", "x0", "input", "plant", "faults",
                        "additive_faults", "parameters", "dropouts", "outliers"},
@@ -239,7 +237,7 @@ SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const Dat
   }
   if (const auto x0 = at.find("x0")) read_start(*x0, system, spec, context.warnings);
   if (use.streamed()) {
-    read_stream(at, system, use, context, spec, written_faults);
+    read_stream(at, system, use, context, spec, part);
   } else {
     refuse_stream(at);
   }
@@ -324,7 +322,7 @@ DataPart read_data(const Cursor& data, const SystemPart& system, const DataUse& 
     return read_csv(*csv, system, folder);
   } else {
     DataPart part;
-    part.data = read_simulate(*simulate, system, use, context, part.written_faults);
+    part.data = read_simulate(*simulate, system, use, context, part);
     return part;
   }
   return {};

@@ -18,9 +18,9 @@ constexpr std::int64_t the_end = std::numeric_limits<std::int64_t>::max();
 /// Reads the faults of a simulation one after another.
 class FaultReader {
  public:
-  FaultReader(const Cursor& list, const SystemPart& system, SimulateSpec& spec,
-              std::vector<std::string>& warnings)
-      : list_(list), system_(system), spec_(spec), warnings_(warnings) {}
+  FaultReader(const Cursor& list, const SystemPart& system, const SystemPart* plant,
+              SimulateSpec& spec, std::vector<std::string>& warnings)
+      : list_(list), system_(system), plant_(plant), spec_(spec), warnings_(warnings) {}
 
   void read(std::vector<WrittenFault>& written);
 
@@ -32,6 +32,7 @@ class FaultReader {
   std::optional<Fault> read_fault(const Cursor& at);
   bool read_mode_fault(const Cursor& at, Fault& fault);
   bool read_outside_fault(const Cursor& at, Fault& fault);
+  bool read_plant_mode(const Cursor& at, Fault& fault);
   std::optional<Index> find_mode(const Cursor& at);
   std::optional<Box> read_magnitudes(const Cursor& at, const std::optional<Box>& range, Index size,
                                      const std::string& mode, const std::string& like);
@@ -44,6 +45,7 @@ class FaultReader {
 
   const Cursor& list_;
   const SystemPart& system_;
+  const SystemPart* plant_;  ///< formulas that make the data; null: there are none
   SimulateSpec& spec_;
   std::vector<std::string>& warnings_;
 };
@@ -100,8 +102,9 @@ bool FaultReader::read_mode_fault(const Cursor& at, Fault& fault) {
               "the mode tells what is different; leave \"mode\" out to describe another fault")) {
     return false;
   }
-  if (system_.formulas && !refuse(at, {"actuator", "sensor"}, "is for linear systems",
-                                  "write what is different into the formulas of a mode"))
+  const bool by_formulas = system_.formulas || plant_;
+  if (by_formulas && !refuse(at, {"actuator", "sensor"}, "is for linear systems",
+                             "write what is different into the formulas of a mode"))
     return false;
   const auto mode = find_mode(*at.find("mode"));
   if (!mode) return false;
@@ -125,11 +128,26 @@ bool FaultReader::read_mode_fault(const Cursor& at, Fault& fault) {
   fault.spec.actuator = whole.actuator.value_or(Box{});
   fault.spec.sensor = whole.sensor.value_or(Box{});
   fault.spec.model = model_of(whole, system_.model);
-  return true;
+  return !plant_ || read_plant_mode(at, fault);
+}
+
+/// What the formulas that make the data do in the mode.
+bool FaultReader::read_plant_mode(const Cursor& at, Fault& fault) {
+  if (fault.spec.name == plant_->nominal) {
+    fault.spec.formulas = plant_->model;
+    return true;
+  }
+  for (const Mode& mode : plant_->modes) {
+    if (mode.name == fault.spec.name) fault.spec.formulas = mode.model;
+  }
+  if (fault.spec.formulas) return true;
+  at.find("mode")->error("is no mode of the formulas in /data/simulate/plant, which make the data",
+                         "describe it in the plant's \"modes\", with this name");
+  return false;
 }
 
 bool FaultReader::read_outside_fault(const Cursor& at, Fault& fault) {
-  if (system_.formulas) {
+  if (system_.formulas || plant_) {
     at.error("names no mode", "faults of systems by formulas are modes: {\"mode\": ...}");
     return false;
   }
@@ -176,8 +194,9 @@ void FaultReader::check_bounded(const Cursor& at, const FaultSpec& fault) {
             " is unbounded",
         "bound " + std::string(key) + " and the additive fault, or use recorded data: \"csv\"");
   };
-  if (!spec_.plant) check(fault.model.W, "W");
-  check(fault.model.V, "V");
+  const Model& made = fault.formulas ? *fault.formulas : fault.model;
+  if (!spec_.plant) check(made.W, "W");
+  check(made.V, "V");
 }
 
 void FaultReader::check_order(const std::vector<std::pair<Cursor, FaultSpec>>& all) {
@@ -235,7 +254,7 @@ std::optional<FaultReader::Fault> FaultReader::read_fault(const Cursor& at) {
     return std::nullopt;
   Fault fault;
   if (!read_times(at, spec_.steps, fault.spec.from, fault.spec.to, warnings_)) return std::nullopt;
-  if (!system_.good || !system_.modes_good)
+  if (!system_.good || !system_.modes_good || (plant_ && !plant_->modes_good))
     return std::nullopt;  // what is wrong there is reported there
   if (!(at.find("mode") ? read_mode_fault(at, fault) : read_outside_fault(at, fault)))
     return std::nullopt;
@@ -257,7 +276,7 @@ void FaultReader::read(std::vector<WrittenFault>& written) {
     written.push_back(std::move(fault->written));
   }
   check_order(all);
-  if (list_.problems().met() == before && !spec_.plant) check_descriptors(all);
+  if (list_.problems().met() == before && !spec_.plant && !plant_) check_descriptors(all);
   for (auto& entry : all) spec_.faults.push_back(std::move(entry.second));
 }
 
@@ -282,9 +301,9 @@ bool read_times(const Cursor& at, std::int64_t steps, std::int64_t& from, std::i
   return true;
 }
 
-void read_faults(const Cursor& faults, const SystemPart& system, SimulateSpec& spec,
-                 std::vector<WrittenFault>& written, std::vector<std::string>& warnings) {
-  FaultReader(faults, system, spec, warnings).read(written);
+void read_faults(const Cursor& faults, const SystemPart& system, SimulateSpec& spec, DataPart& part,
+                 std::vector<std::string>& warnings) {
+  FaultReader(faults, system, part.plant.get(), spec, warnings).read(part.written_faults);
 }
 
 }  // namespace cordon::json

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "cordon/core/interval.hpp"
 #include "read_continuous.hpp"
 #include "study/reading/read_sets.hpp"
 #include "study/text/numbers.hpp"
@@ -129,6 +131,31 @@ class Names {
   std::map<std::string, std::string> seen_;
 };
 
+/// {u : f u ∈ side for all f ∈ [low, high]}, rounded inward; low ≤ high are in [0, 1].
+Interval inputs_under(Interval side, double low, double high) {
+  Interval found = real_line;
+  for (const double f : {low, high}) {
+    if (f == 0 && side.contains(0)) continue;
+    if (f == 0) return {1, -1};
+    const auto bound = [&](double end) {
+      return std::isinf(end) ? Interval{end, end} : directed::over(end, f);
+    };
+    found = intersection(found, {bound(side.lower).upper, bound(side.upper).lower});
+  }
+  return found;
+}
+
+/// The inputs of which what the actuators make lies in the box.
+Box inputs_under(Box inputs, const Box& actuator) {
+  for (Index i = 0; i < inputs.dim(); ++i) {
+    const Interval side =
+        inputs_under({inputs.lower[i], inputs.upper[i]}, actuator.lower[i], actuator.upper[i]);
+    inputs.lower[i] = side.lower;
+    inputs.upper[i] = side.upper;
+  }
+  return inputs;
+}
+
 }  // namespace
 
 Model model_of(const WrittenMode& mode, const Model& nominal) {
@@ -147,6 +174,8 @@ Model model_of(const WrittenMode& mode, const Model& nominal) {
   }
   if (model.nonlinear) return model;
   if (mode.actuator) model.linear.actuator = *mode.actuator;
+  if (mode.actuator && model.region)
+    model.region->inputs = inputs_under(model.region->inputs, *mode.actuator);
   if (mode.sensor) model.linear.sensor = *mode.sensor;
   model.linear = with_exact_effectiveness_applied(std::move(model.linear));
   return model;

@@ -175,24 +175,36 @@ const std::vector<std::string>& on_empty_names() {
 
 const std::vector<std::string>& on_not_enclosed_names() { return on_empty_names(); }
 
-void read_plant(const Cursor& at, const SystemPart& system, SimulateSpec& spec,
-                const ComponentContext& context) {
+std::shared_ptr<const SystemPart> read_plant(const Cursor& at, const SystemPart& system,
+                                             SimulateSpec& spec, const ComponentContext& context) {
+  const auto compare = [&](std::optional<Index> size, std::optional<Index> wanted,
+                           const char* noun) {
+    if (!size || !wanted || *size == *wanted) return;
+    at.error("has " + counted(*size, noun) + ", /system has " + std::to_string(*wanted),
+             "the linear model is one of this plant: the same states, inputs and outputs");
+  };
+  const auto compare_all = [&](const Sizes& sizes) {
+    compare(sizes.states, system.sizes.states, "state");
+    compare(sizes.inputs, system.sizes.inputs, "input");
+    compare(sizes.outputs, system.sizes.outputs, "output");
+  };
+  if (is_nonlinear(at)) {
+    const std::size_t before = at.problems().met();
+    auto part = std::make_shared<SystemPart>(read_system(at, context));
+    compare_all(part->sizes);
+    if (at.problems().met() == before) spec.formulas = std::make_shared<const Model>(part->model);
+    return part;
+  }
   spec.plant = read_component(at, "plant", context);
-  if (!spec.plant) return;
+  if (!spec.plant) return nullptr;
   try {
     spec.made_plant = context.registry.make<PlantEntry>(spec.plant->type, spec.plant->params);
     const Plant& plant = *spec.made_plant;
-    const auto compare = [&](Index size, std::optional<Index> wanted, const char* noun) {
-      if (!wanted || size == *wanted) return;
-      at.error("has " + counted(size, noun) + ", /system has " + std::to_string(*wanted),
-               "the linear model is one of this plant: the same states, inputs and outputs");
-    };
-    compare(plant.states(), system.sizes.states, "state");
-    compare(plant.inputs(), system.sizes.inputs, "input");
-    compare(plant.outputs(), system.sizes.outputs, "output");
+    compare_all({plant.states(), plant.inputs(), plant.outputs(), std::nullopt});
   } catch (const Error& error) {
     report_failure(at, error, context);
   }
+  return nullptr;
 }
 
 std::vector<PipelineSpec> read_pipelines(const Cursor& at, const SystemPart& system,

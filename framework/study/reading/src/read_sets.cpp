@@ -304,4 +304,32 @@ std::optional<LineForm> read_set(const Cursor& at, std::vector<std::string>& war
   }
 }
 
+std::optional<Box> read_plain_box(const Cursor& at, std::optional<Index> dim,
+                                  const std::string& like) {
+  if (!at.expect_keys({"lower", "upper"}, "key of bounds", "{\"lower\": [...], \"upper\": [...]}"))
+    return std::nullopt;
+  auto box = read_box(at, false);
+  if (!box || !dim || box->dim() == *dim) return box;
+  at.error("has dimension " + std::to_string(box->dim()) + ", must have " + std::to_string(*dim) +
+           " like " + like);
+  return std::nullopt;
+}
+
+std::optional<ValidRegion> read_region(const Cursor& at, std::optional<Index> states,
+                                       std::optional<Index> inputs) {
+  const std::string form = "{\"states\": {\"lower\": [...], \"upper\": [...]}, \"inputs\": {...}}";
+  if (!at.expect_keys({"states", "inputs", "nonlinear_outputs"}, "key of a region", form))
+    return std::nullopt;
+  const std::size_t before = at.problems().met();
+  ValidRegion region;
+  const auto states_at = at.need("states", "bounds of all states: " + form);
+  const auto inputs_at =
+      inputs == Index{0} ? at.find("inputs") : at.need("inputs", "bounds of all inputs: " + form);
+  if (states_at) region.states = read_plain_box(*states_at, states, "the states").value_or(Box{});
+  if (inputs_at) region.inputs = read_plain_box(*inputs_at, inputs, "the inputs").value_or(Box{});
+  if (const auto flag = at.find("nonlinear_outputs"))
+    region.nonlinear_outputs = read_flag(*flag).value_or(false);
+  return at.problems().met() == before ? std::optional(std::move(region)) : std::nullopt;
+}
+
 }  // namespace cordon::json

@@ -35,6 +35,7 @@ class SystemReader {
   void read_sets(std::optional<Index> disturbances, std::optional<Index> noises);
   void read_bounds_set(const char* key, std::optional<Index> dim, const std::string& like,
                        LineForm& out);
+  void read_validity();
   void compare_with_nominal();
   void compare(const char* key, std::optional<Index> size, std::optional<Index> wanted,
                const char* noun);
@@ -243,6 +244,20 @@ void SystemReader::read_sets(std::optional<Index> disturbances, std::optional<In
   read_bounds_set("V", noises, v_like, part_.model.V);
 }
 
+void SystemReader::read_validity() {
+  const auto at = system_.find("region");
+  if (!at) {
+    if (nominal_) part_.model.region = nominal_->model.region;
+    return;
+  }
+  if (!exact_ || system_.find("continuous")) {
+    at->error("is for systems of type \"lti\" that are written from k to k + 1",
+              "write it there, as \"cordon linearise\" does, or remove it");
+    return;
+  }
+  part_.model.region = read_region(*at, part_.sizes.states, part_.sizes.inputs);
+}
+
 void SystemReader::compare(const char* key, std::optional<Index> size, std::optional<Index> wanted,
                            const char* noun) {
   if (!size || !wanted || size == wanted) return;
@@ -262,7 +277,8 @@ SystemPart SystemReader::read() {
   if (!system_.expect(Value::Kind::object, "{\"type\": \"lti\", \"A\": [[...]], ...}")) return {};
   const auto type_at = system_.need("type", "\"lti\", \"interval_lti\", or \"descriptor\" with E");
   const auto type = type_at ? read_choice(*type_at, system_types()) : std::nullopt;
-  std::vector<std::string> keys{"type", "E", "A", "B", "Bw", "C", "D", "Dv", "F", "X0", "W", "V"};
+  std::vector<std::string> keys{"type", "E", "A",  "B", "Bw", "C",     "D",
+                                "Dv",   "F", "X0", "W", "V",  "region"};
   if (!nominal_)
     keys.insert(keys.end(),
                 {"U", "nominal", "modes", "names", "sampling_time", "continuous", "disturbance"});
@@ -276,6 +292,7 @@ SystemPart SystemReader::read() {
   read_outputs();
   read_faults();
   read_sets(disturbances_, noises_);
+  read_validity();
   if (nominal_) compare_with_nominal();
   part_.continuous = nominal_ ? nominal_->continuous : read_continuous(system_);
   if (!nominal_) {
@@ -295,13 +312,13 @@ SystemPart SystemReader::read() {
   return std::move(part_);
 }
 
+}  // namespace
+
 bool is_nonlinear(const Cursor& system) {
   if (!system.is(Value::Kind::object)) return false;
   const auto type = system.find("type");
   return type && type->is(Value::Kind::text) && type->value().text() == "nonlinear";
 }
-
-}  // namespace
 
 const std::vector<std::string>& system_types() {
   static const std::vector<std::string> names{"lti", "interval_lti", "descriptor", "nonlinear"};

@@ -83,6 +83,7 @@ void TreeReader::read_sections() {
     study.data = std::move(part.data);
     written.faults = std::move(part.written_faults);
     written.csv_file = std::move(part.written_file);
+    written.plant = std::move(part.plant);
   }
   if (const auto at =
           root_.need("pipelines", "a list of pipelines: [{\"backend\": ..., \"observer\": ...}]")) {

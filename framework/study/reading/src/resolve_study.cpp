@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -96,6 +97,23 @@ Json to_json(const ComponentSpec& spec, const std::string& kind, const Registry&
   return object;
 }
 
+/// Bounds as they are written.
+Json bounds_of(const Box& box) {
+  const auto list = [](const Vector& bounds) {
+    Json all = Json::array();
+    for (const double x : bounds)
+      all.push_back(std::isinf(x) ? Json(x > 0 ? "inf" : "-inf") : Json(x));
+    return all;
+  };
+  return {{"lower", list(box.lower)}, {"upper", list(box.upper)}};
+}
+
+Json to_json(const ValidRegion& region) {
+  Json object{{"states", bounds_of(region.states)}, {"inputs", bounds_of(region.inputs)}};
+  if (region.nonlinear_outputs) object["nonlinear_outputs"] = true;
+  return object;
+}
+
 Json to_json(const Model& model) {
   const LinearModel& linear = model.linear;
   Json system;
@@ -113,6 +131,7 @@ Json to_json(const Model& model) {
   system["X0"] = to_json(model.X0);
   system["W"] = to_json(model.W);
   system["V"] = to_json(model.V);
+  if (model.region) system["region"] = to_json(*model.region);
   return system;
 }
 
@@ -206,13 +225,13 @@ void add_labels(Json& system, const Labels& labels) {
 }
 
 /// U, the name of the nominal mode and the modes, where there are any.
-void add_modes(Json& system, const Study& study, const Written& written) {
-  const LineForm& U = study.model.U;
+void add_modes(Json& system, const LineForm& U, const std::string& nominal,
+               const std::vector<WrittenMode>& modes) {
   if (!is_whole_space(U)) system["U"] = to_json(U);
-  if (written.modes.empty() && study.nominal == Study{}.nominal) return;
-  system["nominal"] = study.nominal;
+  if (modes.empty() && nominal == Study{}.nominal) return;
+  system["nominal"] = nominal;
   system["modes"] = Json::array();
-  for (const WrittenMode& mode : written.modes) {
+  for (const WrittenMode& mode : modes) {
     Json object;
     object["name"] = mode.name;
     add(object, mode);
@@ -276,11 +295,17 @@ Json to_json(const SimulateSpec& spec, const LinearModel& model, bool streamed,
   if (spec.x0) object["x0"] = to_json(*spec.x0);
   if (spec.x0_set) object["x0"] = to_json(*spec.x0_set);
   if (!streamed) return object;
-  if (spec.parameters != ParameterDraw::constant || (model.is_uncertain() && !spec.plant))
+  if (spec.parameters != ParameterDraw::constant ||
+      (model.is_uncertain() && !spec.plant && !spec.formulas))
     object["parameters"] = parameter_draw_names()[static_cast<std::size_t>(spec.parameters)];
   object["input"] = Json::array();
   for (const Signal& signal : spec.input) object["input"].push_back(to_json(signal));
   if (spec.plant) object["plant"] = to_json(*spec.plant, "plant", registry);
+  if (spec.formulas) {
+    const SystemPart& plant = *written.plant;
+    object["plant"] = to_json(plant.model, *plant.formulas, registry);
+    add_modes(object["plant"], plant.model.U, plant.nominal, plant.written);
+  }
   for (std::size_t i = 0; i < spec.faults.size(); ++i)
     object["faults"].push_back(to_json(spec.faults[i], written.faults[i]));
   for (const AdditiveFaultSpec& fault : spec.additive_faults)
@@ -351,7 +376,7 @@ std::string resolve(const Study& study, const Written& written,
   root["system"] =
       written.formulas ? to_json(study.model, *written.formulas, registry) : to_json(study.model);
   add_labels(root["system"], study.labels);
-  add_modes(root["system"], study, written);
+  add_modes(root["system"], study.model.U, study.nominal, written.modes);
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
     const bool streamed = std::any_of(study.pipelines.begin(), study.pipelines.end(),
                                       [](const PipelineSpec& p) { return !p.design(); });

@@ -130,12 +130,26 @@ Json continuous_properties() {
                                     "values in W, or constant")}};
 }
 
+Json region() {
+  const Json bounds =
+      object({{"lower", reference("bounds")}, {"upper", reference("bounds")}}, {"lower", "upper"});
+  return described(
+      object(
+          {{"states", bounds},
+           {"inputs", bounds},
+           {"nonlinear_outputs",
+            described({{"type", "boolean"}}, "the equation of the outputs holds there only, too")}},
+          {"states"}),
+      "states and inputs for which the linear model is proven; everywhere by default");
+}
+
 /// `more`: other keys; none: of a mode.
 Json systems(const Json& more) {
   Json exact = model_properties("matrix"), general = model_properties("interval_matrix");
   exact.update(more);
   general.update(more);
   if (!more.empty()) exact.update(continuous_properties());
+  exact["region"] = region();
   Json intervals = general;
   if (!more.empty()) intervals.update(continuous_properties());
   const Json lti = typed("lti", exact, {"A", "C"}),
@@ -280,8 +294,10 @@ Json definitions(const Registry& registry) {
        {"modes",
         described(Json{{"type", "array"}, {"items", reference("mode")}, {"maxItems", 1000}},
                   "the faults that diagnosers tell apart")}});
-  for (const Json& system : nonlinear_systems(system_names, sampling_time))
+  for (const Json& system : nonlinear_systems(system_names, sampling_time)) {
     defs["system"]["oneOf"].push_back(system);
+    defs["nonlinear_system"]["oneOf"].push_back(system);
+  }
   defs["mode_system"] = systems(Json::object());
   defs["effectiveness"] = effectiveness();
   defs["mode"] = modes();

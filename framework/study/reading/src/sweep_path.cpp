@@ -116,6 +116,12 @@ class Placer {
     return std::nullopt;
   }
 
+  /// A plant that is no component but formulas.
+  static bool is_written_out(const Role& role, const Value& node) {
+    const Value* type = role.kind == "plant" ? node.find("type") : nullptr;
+    return type && type->kind == Kind::text && type->text() == "nonlinear";
+  }
+
   /// What stands behind the step at `depth`, by the place alone: components of a study.
   Role role_by_place(std::size_t depth) const {
     const auto is = [&](std::size_t i, const char* key) { return step(i).key == key; };
@@ -139,7 +145,7 @@ class Placer {
       reported_ = true;
       return std::nullopt;
     }
-    if (!role.kind.empty() &&
+    if (!role.kind.empty() && !is_written_out(role, node) &&
         !(node.kind == Kind::array && (step(depth).every || step_index(step(depth).key))))
       return put_into_component(node, depth, role, starred);
     if (step(depth).every) return put_into_all(node, depth);

@@ -71,7 +71,7 @@ RunOutcome run_one(const detail::OpenData& open, Study study, const Registry& re
 
 bool detail::is_own_model(const Study& study) {
   const auto* simulate = std::get_if<SimulateSpec>(&study.data);
-  return simulate && !simulate->plant && !simulate->made_plant;
+  return simulate && !simulate->plant && !simulate->made_plant && !simulate->formulas;
 }
 
 RunOutcome detail::run_on(const OpenData& open, const Study& study, const Registry& registry,

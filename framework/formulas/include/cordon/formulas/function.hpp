@@ -29,6 +29,8 @@ class Function {
   Index differentiated() const { return differentiated_; }
   int order() const { return order_; }
   const Graph& graph() const { return *graph_; }
+  const std::shared_ptr<const Graph>& shared_graph() const { return graph_; }
+  int node(Index row) const { return at(place(row)).source; }  ///< of the graph
 
   /// The variables that may change the derivatives of the row are none: it is affine in the
   /// variables that are differentiated, with coefficients that may depend on the others.

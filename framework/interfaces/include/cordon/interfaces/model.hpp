@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -88,6 +89,14 @@ LinearModel with_exact_effectiveness_applied(LinearModel model);
 
 struct NonlinearModel;  // nonlinear_model.hpp
 
+/// Where a linear model is proven to enclose the plant: W and V hold the error of linearisation for
+/// x_k ∈ states and u_k ∈ inputs, the inputs before effectiveness acts on them.
+struct ValidRegion {
+  Box states, inputs;
+  /// The equation of y_k holds there only, like that of x_{k+1}; else for all x_k and u_k.
+  bool nonlinear_outputs = false;
+};
+
 /// A model with its bounds: x₀ ∈ X0, w_k ∈ W, v_k ∈ V for all k. U contains every input; Rⁿ where
 /// nothing is said of it. Observers know u and do not use U, statements made in advance rest on it.
 struct Model {
@@ -95,6 +104,8 @@ struct Model {
   LineForm X0, W, V, U = {};
   /// In place of `linear`, which is of size 0 then.
   std::shared_ptr<const NonlinearModel> nonlinear = {};
+  /// Of a linear model that is proven for a part of all states and inputs only.
+  std::optional<ValidRegion> region = {};
 
   bool is_linear() const { return !nonlinear; }
   Index states() const;

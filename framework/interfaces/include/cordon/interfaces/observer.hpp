@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "cordon/interfaces/backend.hpp"
@@ -41,6 +42,10 @@ struct PhaseTimes {
 /// A set-based observer. The base class keeps the previous sample, asks for emptiness after each
 /// step, and holds on to ∅: once the data are proven inconsistent every later estimate is ∅, until
 /// `replace`.
+///
+/// Where the model is proven in a region only, the base class shows by induction that every step
+/// keeps to it: X̂_k within the states and u_k within the inputs for the step to k + 1, and where
+/// the outputs are not linear, the prediction for time k before y_k is used.
 class Observer {
  public:
   virtual ~Observer() = default;
@@ -50,7 +55,8 @@ class Observer {
   /// Begins anew; X0 overrides the model's initial set.
   void start(std::optional<Enclosure> X0 = {});
   /// Takes the sample of the next time; samples come in order. Sizes are checked. Throws
-  /// Errc::unsupported for missing outputs that the observer does not take.
+  /// Errc::unsupported for missing outputs that the observer does not take, Errc::not_enclosed
+  /// where the model's region is not shown to hold the state and the input.
   Estimate step(const Sample& now);
   /// Replaces the current set and keeps the time.
   void replace(Enclosure X);
@@ -174,6 +180,10 @@ class Observer {
   Estimate advance_without_outliers(const Sample& now, std::optional<Sample>& used);
   /// Finds out what the sample contradicts, the estimate of which is empty.
   void explain(const Sample& now);
+  /// Throws Errc::not_enclosed if the step to this sample is not proven to keep to the region.
+  void expect_region(const Sample& now);
+  /// Bounds of x_k by the model alone, without y_k; at the first sample of the initial set.
+  Box predicted();
 
   Model model_;
   std::shared_ptr<const SetBackend> backend_;
@@ -192,7 +202,8 @@ class Observer {
   std::vector<Index> outlier_times_;  ///< of the window, ascending
   std::vector<Index> left_out_;
   std::optional<Contradiction> contradiction_;
-  Enclosure noise_;  ///< V, where it was asked for
+  Enclosure noise_, disturbance_;  ///< V and W, where they were asked for
+  std::string left_region_;        ///< why the next step is not proven to keep to the region
   PhaseTimes times_;
 };
 

@@ -143,6 +143,8 @@ struct DiagnoserEntry {
   bool needs_modes = true;
   /// Its exclusions hold for models by formulas, too; refused otherwise.
   bool takes_nonlinear = false;
+  /// The same of linear models that are proven in a region only.
+  bool takes_regions = false;
 
   std::vector<Diagnostic> refusals(const DiagnoserContext& context, const Registry& registry) const;
 };

@@ -53,6 +53,8 @@ struct FaultSpec {
   /// The whole effectiveness, of which `model` has the exact part in its matrices: what a `plant`
   /// is simulated with. Dimension 0: exactly 1.
   Box actuator = {}, sensor = {};
+  /// Where formulas make the data: the mode of the same name of theirs.
+  std::optional<Model> formulas = {};
 };
 
 /// An additive fault of simulated data: for k = from … to, n_k of the fault is the signal's value
@@ -91,7 +93,8 @@ enum class ParameterDraw {
   varying    ///< drawn anew at every step
 };
 
-/// Simulated data: x_{k+1}, y_k from the model, seeded and identical on every machine.
+/// Simulated data: x_{k+1}, y_k from the model or what stands in its place, seeded and identical on
+/// every machine.
 struct SimulateSpec {
   std::int64_t steps = 0;  ///< samples k = 0 … steps
   std::uint64_t seed = 1;
@@ -107,6 +110,8 @@ struct SimulateSpec {
       faults;  ///< in order of time, without overlap; between them the plant is in the nominal mode
   std::optional<ComponentSpec> plant;  ///< in place of the linear model
   std::shared_ptr<const Plant> made_plant;
+  std::shared_ptr<const Model> formulas =
+      {};  ///< the same as a system by formulas, with its bounds
   std::vector<AdditiveFaultSpec> additive_faults = {};
   ParameterDraw parameters = ParameterDraw::constant;
   std::int64_t seeds = 1;  ///< diagnosers are tried on the seeds seed … seed + seeds - 1

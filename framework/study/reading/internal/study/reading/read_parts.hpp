@@ -114,6 +114,7 @@ struct SystemPart {
   }
 };
 const std::vector<std::string>& system_types();
+bool is_nonlinear(const Cursor& system);  ///< by its type
 struct ComponentContext;
 /// A system with its modes.
 SystemPart read_system(const Cursor& system, const ComponentContext& context);
@@ -157,6 +158,7 @@ struct DataPart {
   std::variant<SimulateSpec, CsvSpec> data;
   std::string written_file;  ///< of recorded data
   std::vector<WrittenFault> written_faults;
+  std::shared_ptr<const SystemPart> plant;  ///< a system by formulas that makes the data
 };
 const std::vector<std::string>& disturbance_signal_names();
 const std::vector<std::string>& signal_types();
@@ -203,17 +205,17 @@ DataPart read_csv(const Cursor& at, const SystemPart& system, const std::filesys
 /// steps (0: not known) end before. False: reported.
 bool read_times(const Cursor& at, std::int64_t steps, std::int64_t& from, std::int64_t& to,
                 std::vector<std::string>& warnings);
-/// Reads /data/simulate/faults.
-void read_faults(const Cursor& faults, const SystemPart& system, SimulateSpec& spec,
-                 std::vector<WrittenFault>& written, std::vector<std::string>& warnings);
+/// Reads /data/simulate/faults. `part`: has the plant, if formulas make the data.
+void read_faults(const Cursor& faults, const SystemPart& system, SimulateSpec& spec, DataPart& part,
+                 std::vector<std::string>& warnings);
 /// Reads /data/simulate/outliers and dropouts; `outputs`: rows of C, if known.
 void read_outliers(const Cursor& list, std::optional<Index> outputs, SimulateSpec& spec,
                    std::vector<std::string>& warnings);
 void read_dropouts(const Cursor& list, std::optional<Index> outputs, SimulateSpec& spec,
                    std::vector<std::string>& warnings);
-/// Reads /data/simulate/plant and makes it.
-void read_plant(const Cursor& plant, const SystemPart& system, SimulateSpec& spec,
-                const ComponentContext& context);
+/// Reads /data/simulate/plant and makes it; a system by formulas is returned.
+std::shared_ptr<const SystemPart> read_plant(const Cursor& plant, const SystemPart& system,
+                                             SimulateSpec& spec, const ComponentContext& context);
 /// Asks the algorithms of the pipelines for which `asks` is true whether they can work with the
 /// model.
 std::vector<PipelineSpec> read_pipelines(const Cursor& pipelines, const SystemPart& system,
@@ -235,6 +237,7 @@ struct Written {
   std::vector<WrittenMode> modes;
   std::vector<WrittenFault> faults;
   std::optional<WrittenFormulas> formulas = {};
+  std::shared_ptr<const SystemPart> plant = {};  ///< of the data
 };
 /// The study as JSON with every default: keys in a fixed order, sets in exchange form, doubles in
 /// the shortest form that reads back equal. With a sweep, what its paths lead into stays as it is

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "cordon/core/line_form.hpp"
+#include "cordon/interfaces/model.hpp"
 #include "study/text/json_cursor.hpp"
 
 namespace cordon::json {
@@ -16,6 +18,15 @@ const std::vector<std::string>& set_types();
 /// The set at this place. Reports anything wrong; a set that is proven empty is an error. If
 /// emptiness cannot be decided, the set is returned and `warnings` tells.
 std::optional<LineForm> read_set(const Cursor& at, std::vector<std::string>& warnings);
+
+/// {"lower": [...], "upper": [...]}: the bounds as they are written, "inf" and "-inf" among them.
+/// `dim`: like what is named, if it is known.
+std::optional<Box> read_plain_box(const Cursor& at, std::optional<Index> dim,
+                                  const std::string& like);
+
+/// {"states": box, "inputs": box, "nonlinear_outputs": true}, inputs where there are some.
+std::optional<ValidRegion> read_region(const Cursor& at, std::optional<Index> states,
+                                       std::optional<Index> inputs);
 
 /// {x : lower ≤ x ≤ upper, H x ≤ h} with finite bounds, as a constrained zonotope: the box's
 /// generators and one more generator and constraint per row, H_i (c + G ξ) + s_i = h_i with the

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Linear models that are proven to enclose formulas on a region.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "cordon/core/interval.hpp"
+#include "cordon/interfaces/model.hpp"
+
+namespace cordon {
+
+/// How much of a row the linear model leaves out.
+struct LinearisedRow {
+  Interval remainder;  ///< contains F_row(z) - slope · z for all z of the region
+  Interval attained;   ///< values that it takes at points: no bounds are narrower
+};
+
+/// A linear model with its bounds, and what they cost.
+struct Linearised {
+  Model model;
+  std::vector<LinearisedRow> f, g;
+  /// Rows whose remainder is not 0 are coordinates of W or V, behind those of the formulas: their
+  /// numbers, in order.
+  std::vector<Index> in_W, in_V;
+};
+
+/// A linear model of a system by formulas: for all (x, u) ∈ region, w ∈ W, v ∈ V
+///   f(x, w, u) ∈ A x + B u + Bw (w, e),   g(x, v, u) ∈ C x + D u + Dv (v, d),
+///   W' = W × E,  V' = V × D,
+/// A, B and the first columns of Bw the Jacobian of f at the centre of region × hull W, E the box
+/// of f(x, w, u) - A x - B u - Bw w over it, with a column of the identity for each of its
+/// coordinates; g likewise. E holds the constants, too, and is bounded by branch and bound: it
+/// comes within a thousandth of the smallest box where 1,000 parts of the region do. Bounds are
+/// outward, for the doubles that A, B, … are.
+///
+/// Invariants and the admissible set of the formulas are left out. Throws Errc::dimension,
+/// Errc::unsupported for formulas of the time k and unbounded regions, W or V,
+/// Errc::not_enclosed where a formula is not defined on the whole region.
+Linearised linearise(const Model& model, const Box& states, const Box& inputs);
+
+/// {"states": {"lower": [...], "upper": [...]}, "inputs": {...}} from a JSON file: bounds of the
+/// states and inputs of a system by formulas, without those of its parameters that are states.
+/// Throws InputError with every problem.
+ValidRegion read_region(const std::filesystem::path& file, const Model& model);
+
+}  // namespace cordon
