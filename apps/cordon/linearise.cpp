@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "cordon/core/error.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
 #include "json_text.hpp"
 #include "linearised_study.hpp"
@@ -31,10 +32,11 @@ struct LineariseArguments {
 Box states_of_mode(const Box& states, const Model& model) {
   const Index parameters = model.nonlinear->parameters, others = states.dim();
   const Vector c = model.X0.c.tail(parameters),
-               r = model.X0.G.bottomRows(parameters).cwiseAbs().rowwise().sum();
+               r = model.X0.G.bottomRows(parameters).cwiseAbs().rowwise().sum(),
+               room = tolerances::reported * (c.cwiseAbs() + r);  // for the rounding of hulls
   Box all{Vector(others + parameters), Vector(others + parameters)};
-  all.lower << states.lower, (c - r).unaryExpr([](double x) { return rounding::down(x); });
-  all.upper << states.upper, (c + r).unaryExpr([](double x) { return rounding::up(x); });
+  all.lower << states.lower, c - r - room;
+  all.upper << states.upper, c + r + room;
   return all;
 }
 

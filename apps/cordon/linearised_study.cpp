@@ -23,6 +23,9 @@ Json region_of(const ValidRegion& region) {
   return json;
 }
 
+/// The set of a variable for each row that is not there.
+Json nothing(Index rows) { return {{"type", "point"}, {"center", list_of(Vector::Zero(rows))}}; }
+
 Json system_of(const Model& model) {
   const LinearModel& linear = model.linear;
   Json json{{"type", "lti"}, {"A", rows_of(linear.A)}};
@@ -32,8 +35,8 @@ Json system_of(const Model& model) {
   if (linear.inputs() > 0) json["D"] = rows_of(linear.D);
   if (linear.noises() > 0) json["Dv"] = rows_of(linear.Dv);
   json["X0"] = set_of(model.X0);
-  if (linear.disturbances() > 0) json["W"] = set_of(model.W);
-  if (linear.noises() > 0) json["V"] = set_of(model.V);
+  json["W"] = linear.disturbances() > 0 ? set_of(model.W) : nothing(linear.states());
+  json["V"] = linear.noises() > 0 ? set_of(model.V) : nothing(linear.outputs());
   json["region"] = region_of(*model.region);
   return json;
 }
@@ -54,11 +57,12 @@ Json names_of(const Study& study, const Linearised& nominal) {
   if (!labels.states.empty()) names["states"] = labels.states;
   if (!labels.inputs.empty()) names["inputs"] = labels.inputs;
   if (!labels.outputs.empty()) names["outputs"] = labels.outputs;
-  if (nominal.model.linear.disturbances() > 0) {
+  const LinearModel& linear = nominal.model.linear;
+  if (linear.disturbances() > 0) {
     names["disturbances"] = names_with_errors(labels.disturbances, "w", study.model.disturbances(),
                                               labels.states, "x", nominal.in_W);
   }
-  if (nominal.model.linear.noises() > 0) {
+  if (linear.noises() > 0) {
     names["noises"] = names_with_errors(labels.noises, "v", study.model.noises(), labels.outputs,
                                         "y", nominal.in_V);
   }
@@ -78,7 +82,10 @@ Json pipelines_of(const Json& written, bool has_modes) {
     const Json observer{
         {"type", "prediction_correction"}, {"max_generators", 40}, {"max_constraints", 20}};
     if (has_modes) {
-      made["diagnoser"] = {{"type", "consistency_bank"}, {"observer", observer}};
+      const bool is_bank = one.contains("diagnoser") && one["diagnoser"].is_object() &&
+                           one["diagnoser"].value("type", "") == "consistency_bank";
+      made["diagnoser"] = is_bank ? one["diagnoser"] : Json{{"type", "consistency_bank"}};
+      made["diagnoser"]["observer"] = observer;
     } else {
       made["observer"] = observer;
     }

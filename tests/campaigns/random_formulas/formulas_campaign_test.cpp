@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `cordon run` and `cordon verify` on random formulas, by every method: no truth is lost, and no
-// result is refuted.
+// `cordon run` and `cordon verify` on random formulas, by every method and by linear models of
+// them: no truth is lost, and no result is refuted.
 //   CORDON_CAMPAIGN_SYSTEMS   how many (30), from number
 //   CORDON_CAMPAIGN_FIRST     (0) on
 //   CORDON_CAMPAIGN_KEEP      a directory that keeps studies and results of those that failed
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include "formula_study.hpp"
 #include "run/program.hpp"
@@ -23,6 +25,22 @@ Outcome program(const std::string& arguments) { return test::cordon_with(argumen
 std::uint64_t asked(const char* variable, std::uint64_t otherwise) {
   const char* text = std::getenv(variable);
   return text ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+using Json = nlohmann::ordered_json;
+
+/// The box of X0, and as much again on all sides.
+Json region_of(const Json& system) {
+  Json region{{"states", {{"lower", Json::array()}, {"upper", Json::array()}}}};
+  const Json &lower = system["X0"]["lower"], &upper = system["X0"]["upper"];
+  for (std::size_t i = 0; i < lower.size(); ++i) {
+    const double low = lower[i].get<double>(), high = upper[i].get<double>();
+    const double room = 0.05 * std::abs(low) + high - low;
+    region["states"]["lower"].push_back(low - room);
+    region["states"]["upper"].push_back(high + room);
+  }
+  if (system.contains("inputs")) region["inputs"] = {{"lower", {-1}}, {"upper", {1}}};
+  return region;
 }
 
 }  // namespace
@@ -64,4 +82,39 @@ TEST_CASE("no truth of random formulas is lost, whatever the method") {
   MESSAGE(verified, " verified, ", undecided, " with results that are not decided, ", refused,
           " refused by the program");
   CHECK(4 * refused <= count);
+}
+
+TEST_CASE("no truth of random formulas is lost by linear models that are proven in a region") {
+  const std::uint64_t first = asked("CORDON_CAMPAIGN_FIRST", 0),
+                      count = asked("CORDON_CAMPAIGN_SYSTEMS", 30);
+  std::uint64_t made = 0, estimates = 0;
+  for (std::uint64_t number = first; number < first + count; ++number) {
+    CAPTURE(number);
+    const Scratch home;
+    const auto at = [&](const char* name) { return (home / name).string(); };
+    const Json study = cordon::campaigns::formula_study(number);
+    home.write("study.json", study.dump());
+    home.write("region.json", region_of(study["system"]).dump());
+    const Outcome linear = program("linearise " + at("study.json") + " --region " +
+                                   at("region.json") + " --write " + at("linear.json"));
+    CAPTURE(linear.out);
+    CHECK((linear.code == 0 || linear.code == 2));  // 2: formulas of k, or not defined everywhere
+    if (linear.code != 0) continue;
+    ++made;
+    const Outcome run =
+        program("run --quiet --no-report --out " + at("out") + " " + at("linear.json"));
+    CAPTURE(run.out);
+    CHECK((run.code == 0 || run.code == 2));
+    if (!fs::exists(home / "out" / "results.json")) continue;
+    const Json results = Json::parse(bytes_of(home / "out/results.json"));
+    for (const Json& pipeline : results["pipelines"]) {
+      const Json& summary = pipeline["summary"];
+      estimates += summary["steps"].get<std::uint64_t>();
+      CHECK(summary["outside_from"].is_null());
+      CHECK(summary["failed_assumption"].is_null());
+      CHECK(summary["inconsistent_from"].is_null());
+    }
+  }
+  MESSAGE(made, " linear models of ", count, ", ", estimates, " estimates");
+  CHECK(estimates > count);
 }

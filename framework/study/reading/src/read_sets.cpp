@@ -308,11 +308,24 @@ std::optional<Box> read_plain_box(const Cursor& at, std::optional<Index> dim,
                                   const std::string& like) {
   if (!at.expect_keys({"lower", "upper"}, "key of bounds", "{\"lower\": [...], \"upper\": [...]}"))
     return std::nullopt;
-  auto box = read_box(at, false);
-  if (!box || !dim || box->dim() == *dim) return box;
-  at.error("has dimension " + std::to_string(box->dim()) + ", must have " + std::to_string(*dim) +
-           " like " + like);
-  return std::nullopt;
+  const auto lower_at = at.need("lower", "a list of lower bounds"),
+             upper_at = at.need("upper", "a list of upper bounds");
+  const auto lower = lower_at ? read_bounds(*lower_at) : std::nullopt,
+             upper = upper_at ? read_bounds(*upper_at) : std::nullopt;
+  if (!lower || !upper || !expect_size(*upper_at, *upper, lower->size(), lower_at->pointer()))
+    return std::nullopt;
+  if (dim && lower->size() != *dim) {
+    at.error("has dimension " + std::to_string(lower->size()) + ", must have " +
+             std::to_string(*dim) + " like " + like);
+    return std::nullopt;
+  }
+  for (Index i = 0; i < lower->size(); ++i) {
+    if ((*lower)[i] <= (*upper)[i]) continue;
+    lower_at->item(as_size(i))
+        .error("lies above the upper bound: the box is empty", "exchange the two bounds");
+    return std::nullopt;
+  }
+  return Box{*lower, *upper};
 }
 
 std::optional<ValidRegion> read_region(const Cursor& at, std::optional<Index> states,

@@ -58,11 +58,12 @@ class BoxEnclosure {
   /// different paths may not.)
   Interval range(Index row) const;
 
-  /// Bounds of F_row(z) - slope · z over the box, as those of `range`.
-  Interval deviation(Index row, const Eigen::RowVectorXd& slope) const;
-  /// The variable in which the row is farthest from affine over the box: the largest rad [J]_i r_i;
-  /// -1: it is affine with constant slopes.
-  Index most_bent(Index row) const;
+  /// Bounds of weights · (F(z) - slopes z) over the box, as those of `range`: a weight for each
+  /// row, and a row of slopes.
+  Interval deviation(VectorIn weights, MatrixIn slopes) const;
+  /// The variable in which weights · F is farthest from affine over the box: the largest
+  /// Σ |weight| rad [J]_i r_i over the rows; -1: all of them are affine with constant slopes.
+  Index most_bent(VectorIn weights) const;
 
   /// Σ over the rows of rad [J]_i, not rounded upward: by how much their slopes in z_i change over
   /// the box. Infinite where a derivative is not bounded, or a row that depends on z_i is not.
@@ -104,6 +105,9 @@ class BoxEnclosure {
   };
   std::optional<Form> mean_value(Index row) const;   ///< where its derivatives are bounded
   std::optional<Form> first_order(Index row) const;  ///< the same, of the second ones
+  using FormOfRow = std::optional<Form> (BoxEnclosure::*)(Index) const;
+  /// Nothing where a row has no such form.
+  std::optional<Interval> deviation_by(FormOfRow form, VectorIn weights, MatrixIn slopes) const;
   bool is_bounded(Index row, const Form& form) const;
   std::size_t first_entry(Index row) const { return entries_[as_size(row)]; }
 
