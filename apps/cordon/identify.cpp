@@ -32,7 +32,7 @@ constexpr double shares_of_V[] = {0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 2};
 
 struct IdentifyArguments {
   std::filesystem::path study, write, figure;
-  std::string scale = "both", train = "100%", pipeline;
+  std::string scale = "both", train = "100%", margin, pipeline;
   Index leave_out = 0;
   bool trade_off = false, json = false;
 };
@@ -52,14 +52,14 @@ Scaled scale_from(const std::string& name) {
 }
 
 /// "70%": 0.7. A number alone could be either.
-double share_from(const std::string& text) {
+double share_from(const std::string& text, const char* option) {
   double percent = 0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, percent);
   const bool is_share = error == std::errc() && std::string(rest, end) == "%";
   if (!is_share || !(percent > 0) || percent > 100)
     throw Error(Errc::invalid,
-                "--train takes a share of the samples, 70% for example, not \"" + text + "\"");
+                std::string(option) + " takes a share, 70% for example, not \"" + text + "\"");
   return percent / 100;
 }
 
@@ -101,7 +101,7 @@ struct Identified {
 
 /// The first of them that bounds are taken from.
 std::span<const Sample> trained_part(std::span<const Sample> samples, const std::string& share) {
-  const double count = share_from(share) * static_cast<double>(samples.size());
+  const double count = share_from(share, "--train") * static_cast<double>(samples.size());
   return samples.first(std::max<std::size_t>(1, static_cast<std::size_t>(count)));
 }
 
@@ -256,16 +256,28 @@ std::string report_json(const Identified& result, const IdentifyArguments& argum
   return json_text(report);
 }
 
+/// The study with these bounds, and what is to be added to those that were scaled.
+void write_bounds(const Study& study, BoundFactors factors, const IdentifyArguments& arguments,
+                  std::string remark) {
+  const double margin = arguments.margin.empty() ? 0 : share_from(arguments.margin, "--margin");
+  const Scaled scaled = scale_from(arguments.scale);
+  if (scaled != Scaled::noises) factors.disturbances *= 1 + margin;
+  if (scaled != Scaled::disturbances) factors.noises *= 1 + margin;
+  if (margin > 0) remark += ", and " + arguments.margin + " is added to them";
+  write_identified(study, factors, remark, arguments.write);
+  note(fmt::format("Wrote {}", arguments.write.string()));
+}
+
 /// With the estimates of a pipeline. `why`: no linear program finds the bounds; empty: it would.
 Exit searched(const Study& study, const std::vector<Sample>& samples,
               const IdentifyArguments& arguments, const Registry& registry,
               const std::string& why) {
   const Scaled scaled = scale_from(arguments.scale);
   if (scaled == Scaled::each || arguments.leave_out > 0 || arguments.trade_off ||
-      !arguments.write.empty() || !arguments.figure.empty()) {
+      !arguments.figure.empty()) {
     throw Error(Errc::invalid,
-                "--scale each, --leave-out, --trade-off, --figure and --write need a linear "
-                "program, and there is none: " +
+                "--scale each, --leave-out, --trade-off and --figure need a linear program, and "
+                "there is none: " +
                     (why.empty() ? "a pipeline was named" : why));
   }
   const std::vector<const PipelineSpec*> all = pipelines_called(study, arguments.pipeline);
@@ -291,7 +303,13 @@ Exit searched(const Study& study, const std::vector<Sample>& samples,
                       samples.size()) +
           text_of(found, search));
   }
-  return found.kept < infinity ? Exit::done : Exit::unanswered;
+  if (found.kept == infinity) return Exit::unanswered;
+  if (!arguments.write.empty()) {
+    write_bounds(study, factors_of(found, search), arguments,
+                 fmt::format("W and V leave estimates of {} of {} samples", search.samples.size(),
+                             samples.size()));
+  }
+  return Exit::done;
 }
 
 Exit identify(const Program& program, const IdentifyArguments& arguments) {
@@ -321,11 +339,8 @@ Exit identify(const Program& program, const IdentifyArguments& arguments) {
   }
   if (result.factors.status != Status::found) return Exit::unanswered;
   if (!arguments.write.empty()) {
-    write_identified(
-        study, result.factors,
-        fmt::format("W and V explain {} of {} samples", result.trained, result.samples),
-        arguments.write);
-    note(fmt::format("Wrote {}", arguments.write.string()));
+    write_bounds(study, result.factors, arguments,
+                 fmt::format("W and V explain {} of {} samples", result.trained, result.samples));
   }
   return Exit::done;
 }
@@ -358,6 +373,10 @@ CORDON_COMMAND(identify) {
   command
       ->add_option("--write", arguments->write, "Write the study with these bounds to a new file")
       ->option_text("FILE");
+  command
+      ->add_option("--margin", arguments->margin,
+                   "Write bounds that are wider by this share, for what the samples have not shown")
+      ->option_text("20%");
   command
       ->add_option("--pipeline", arguments->pipeline,
                    "Search with the estimates of this pipeline. Without it the first one is taken "

@@ -64,6 +64,17 @@ SearchedBounds search_bounds(const BoundSearch& search, const std::function<bool
   return found;
 }
 
+BoundFactors factors_of(const SearchedBounds& found, const BoundSearch& search) {
+  const auto of = [&](const LineForm& set, Scaled alone) {
+    const bool is_scaled = search.scaled == Scaled::both || search.scaled == alone;
+    return Vector(Vector::Constant(set.generators(), is_scaled ? found.kept : 1));
+  };
+  BoundFactors factors;
+  factors.disturbances = of(search.study.model.W, Scaled::disturbances);
+  factors.noises = of(search.study.model.V, Scaled::noises);
+  return factors;
+}
+
 std::string text_of(const SearchedBounds& found, const BoundSearch& search) {
   std::string text =
       fmt::format("By the estimates of pipeline \"{}\", which enclose what is possible:\n",

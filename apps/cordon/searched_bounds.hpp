@@ -33,6 +33,9 @@ struct BoundSearch {
 /// Estimates that cannot be enclosed refute nothing. `stop` is asked between runs.
 SearchedBounds search_bounds(const BoundSearch& search, const std::function<bool()>& stop);
 
+/// `kept` for what was scaled, if there is one.
+BoundFactors factors_of(const SearchedBounds& found, const BoundSearch& search);
+
 std::string text_of(const SearchedBounds& found, const BoundSearch& search);
 std::string json_of(const SearchedBounds& found, const BoundSearch& search);
 

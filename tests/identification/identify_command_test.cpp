@@ -159,3 +159,38 @@ TEST_CASE("where nothing explains the data there is no factor") {
   CHECK(told.code == 5);
   CHECK(told.out.find("No factors explain the data") != std::string::npos);
 }
+
+TEST_CASE("bounds that are sought with estimates are written, with a margin") {
+  const char* record = "u,y\n1,0\n1,0.5\n0,0.95\n0,0.9\n0,0.83\n";
+  const Json formulas = Json::parse(R"json({"cordon": 1,
+    "system": {"type": "nonlinear", "states": ["x"], "inputs": ["u"], "disturbances": ["w"],
+      "noises": ["v"], "f": ["x + 0.5*u - 0.05*x*abs(x) + w"], "g": ["x + v"],
+      "X0": {"type": "box", "lower": [-1], "upper": [1]},
+      "W": {"type": "box", "lower": [-1], "upper": [1]},
+      "V": {"type": "box", "lower": [-0.01], "upper": [0.01]}},
+    "data": {"csv": {"file": "d.csv", "inputs": ["u"], "outputs": ["y"]}},
+    "pipelines": [{"backend": "interval", "observer": "nonlinear"}]})json");
+  const Run run(formulas, record);
+  CAPTURE(run.outcome.out);
+  const test::Outcome told = run("identify s.json --scale W --write t.json");
+  CAPTURE(told.out);
+  REQUIRE(told.code == 0);
+  REQUIRE(run("identify s.json --scale W --margin 50% --write m.json").code == 0);
+  const Json exact = Json::parse(run.text("t.json"))["system"],
+             wider = Json::parse(run.text("m.json"))["system"];
+  CHECK(exact["W"]["upper"][0].get<double>() < 0.1);
+  CHECK(wider["W"]["upper"][0].get<double>() ==
+        doctest::Approx(1.5 * exact["W"]["upper"][0].get<double>()));
+  CHECK(wider["V"]["upper"][0].get<double>() == doctest::Approx(0.01));
+  CHECK(wider["$comment"].get<std::string>().find("50% is added") != std::string::npos);
+  CHECK(run("run t.json --out again --no-report").code == 0);
+  const test::Outcome wrong = run("identify s.json --margin 0.5 --write n.json");
+  CHECK(wrong.code == 2);
+  CHECK(wrong.out.find("--margin takes a share") != std::string::npos);
+  Json varying = formulas;
+  varying["system"]["parameters"]["a"] = {{"lower", 0.04}, {"upper", 0.06}, {"varying", true}};
+  varying["system"]["f"] = {"x + 0.5*u - a*x*abs(x) + w"};
+  const Run other(varying, record);
+  CHECK(other("identify s.json --write n.json").out.find("parameters that vary") !=
+        std::string::npos);
+}
