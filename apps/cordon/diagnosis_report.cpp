@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "cordon/interfaces/nonlinear_model.hpp"
 #include "diagnosis_scores.hpp"
 
 namespace cordon::apps {
@@ -83,6 +84,17 @@ std::string proven_text(const std::vector<FaultBound>& faults, const Labels& lab
   return text;
 }
 
+/// ", leak in [0.006, 0.014]", of the parameters with bounds, which are the last states.
+std::string parameters_text(const Study& study, const Box& estimate) {
+  const Index count = study.model.nonlinear ? study.model.nonlinear->parameters : 0;
+  std::string text;
+  for (Index i = estimate.dim() - count; i >= 0 && i < estimate.dim(); ++i) {
+    text += fmt::format(", {} in [{:.4g}, {:.4g}]", label_of(study.labels.states, "x", i),
+                        estimate.lower[i], estimate.upper[i]);
+  }
+  return text;
+}
+
 /// Why something is said that has no proof of its own.
 std::string reason_text(const DiagnosisEvent& event, std::size_t modes) {
   switch (event.what) {
@@ -129,6 +141,7 @@ Rows timeline(const Study& study, const DiagnosisOutcome& found, std::int64_t& l
     std::string evidence = event.faults.empty() ? evidence_text(event.evidence)
                                                 : proven_text(event.faults, study.labels);
     if (evidence.empty()) evidence = reason_text(event, found.modes.size());
+    if (event.estimate.dim() > 0) evidence += parameters_text(study, event.estimate);
     rows.push_back({fmt::format("{}", event.k), event_name(event, before), mode, evidence});
     if (seconds > 0) {
       rows.back().insert(rows.back().begin() + 1,
@@ -142,6 +155,19 @@ Rows timeline(const Study& study, const DiagnosisOutcome& found, std::int64_t& l
 std::string number_text(double value) {
   if (std::isnan(value)) return "-";
   return std::isinf(value) ? "unbounded" : fmt::format("{:.6g}", value);
+}
+
+/// Bounds of the state at the end.
+std::string last_state_text(const Study& study, const DiagnosisOutcome& found, const Paint& paint) {
+  if (!found.last_state) return "";
+  const auto& [k, mode, hull] = *found.last_state;
+  Rows rows{{"STATE", "FROM", "TO"}};
+  for (Index i = 0; i < hull.dim(); ++i) {
+    rows.push_back({label_of(study.labels.states, "x", i), number_text(hull.lower[i]),
+                    number_text(hull.upper[i])});
+  }
+  return fmt::format("\nThe state in mode \"{}\" at {}\n{}", mode_name(found.modes, mode),
+                     time_text(study.labels, k), table(rows, paint));
 }
 
 /// Its name, or its number.
@@ -238,8 +264,8 @@ std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline,
   text += "\n";
   if (!pipeline.error.empty())
     return text + paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
-  return text + score_text(study, found, paint) + faults_text(found, study.labels, paint) +
-         assumption_text(study, pipeline, paint);
+  return text + last_state_text(study, found, paint) + score_text(study, found, paint) +
+         faults_text(found, study.labels, paint) + assumption_text(study, pipeline, paint);
 }
 
 std::string assumption_text(const Study& study, const PipelineOutcome& pipeline,

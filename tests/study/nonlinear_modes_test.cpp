@@ -140,9 +140,23 @@ TEST_CASE("a leak of unknown size is a mode: isolated, and its size enclosed") {
   for (std::size_t i = 0; i < 3; ++i) {
     const Json pipeline = run.pipeline(i);
     bool isolated = false;
-    for (const Json& event : pipeline["summary"]["events"])
-      isolated = isolated || (event["what"] == "isolated" && event["mode"] == "leak_1");
+    const auto encloses = [](const Json& hull) {
+      return hull["lower"][2].get<double>() <= 0.013 && hull["upper"][2].get<double>() >= 0.013;
+    };
+    for (const Json& event : pipeline["summary"]["events"]) {
+      if (event["what"] != "isolated" || event["mode"] != "leak_1") continue;
+      isolated = true;
+      CHECK(encloses(event["estimate"]));
+    }
     CHECK(isolated);
+    const Json& last = pipeline["summary"]["last_state"];
+    CHECK(last["mode"] == "leak_1");
+    CHECK(last["k"] == study["data"]["simulate"]["steps"]);
+    CHECK(encloses(last["hull"]));
+    const double width =
+        last["hull"]["upper"][2].get<double>() - last["hull"]["lower"][2].get<double>();
+    CHECK(width <= 0.0140001);
+    if (pipeline["backend"] == "constrained_zonotope") CHECK(width < 0.013);  // products narrow it
   }
 }
 

@@ -32,6 +32,7 @@ void write(JsonWriter& json, const DiagnosisEvent& event, const Names& modes) {
     json.key("evidence");
     write(json, event.evidence);
   }
+  if (event.estimate.dim() > 0) write_box(json, "estimate", event.estimate);
   if (!event.faults.empty()) {
     json.key("faults").begin_array();
     for (const FaultBound& bound : event.faults) write(json, JudgedBound{bound, {}});
@@ -178,6 +179,15 @@ void write(JsonWriter& json, const Diagnosis& diagnosis, const std::optional<Ind
 void write_members(JsonWriter& json, const DiagnosisOutcome& outcome) {
   json.member("runs", outcome.runs).member("steps_of_all_runs", outcome.steps);
   write_list(json, "events", outcome.events, outcome.modes);
+  json.key("last_state");
+  if (const auto& state = outcome.last_state) {
+    json.begin_object().member("k", state->k);
+    write_mode(json, "mode", outcome.modes, state->mode);
+    write_box(json, "hull", state->hull);
+    json.end_object();
+  } else {
+    json.null();
+  }
   write_list(json, "segments", outcome.segments, outcome.modes);
   json.member("left_out", outcome.left_out);
   write_scores(json, outcome);

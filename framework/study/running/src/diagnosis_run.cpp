@@ -92,16 +92,25 @@ class DiagnosisRun final : public PipelineRun {
     if (failed()) return;
     if (found_.steps == 0 && record.mode) found_.truth_known = true;
     if (diagnosis->reset) check_->restarted();
-    ++found_.steps;
-    if (seed_offset_ == 0) {
-      ++outcome_.steps;
-      timeline_->step(record.mode, *diagnosis,
-                      [&](DiagnosisEvent event) { keep(found_.events, std::move(event)); });
-    }
-    step_us_.add(diagnoser_->step_us());
     score_->step(record.mode, *diagnosis);
     if (Results* const results = writer())
       results->diagnosis({*diagnosis, record.mode, faults, diagnoser_->step_us()});
+    ++found_.steps;
+    if (seed_offset_ == 0) {
+      ++outcome_.steps;
+      timeline_->step(record.mode, *diagnosis, [&](DiagnosisEvent event) {
+        using What = DiagnosisEvent::Kind;
+        if (event.what == What::isolated || event.what == What::resumed)
+          event.estimate = hull_of(diagnosis->estimate);
+        keep(found_.events, std::move(event));
+      });
+      monitored_ = std::move(*diagnosis);
+    }
+    step_us_.add(diagnoser_->step_us());
+  }
+
+  static Box hull_of(const std::optional<Enclosure>& estimate) {
+    return estimate && estimate->set ? (*estimate)->interval_hull() : Box{};
   }
 
   void end_run() {
@@ -111,6 +120,10 @@ class DiagnosisRun final : public PipelineRun {
     found_.runs_with_false_alarm += score_->false_alarms() > 0;
     found_.runs_with_wrong_mode += score_->wrong_mode();
     judge_run();
+    if (seed_offset_ == 0 && monitored_ && monitored_->decision == Decision::monitoring) {
+      const Box hull = hull_of(monitored_->estimate);
+      if (hull.dim() > 0) found_.last_state = {monitored_->k, monitored_->mode, hull};
+    }
     if (failed() && seeds_ > 1)
       outcome_.error +=
           " (seed " + std::to_string(seed_offset_ + 1) + " of " + std::to_string(seeds_) + ")";
@@ -184,6 +197,7 @@ class DiagnosisRun final : public PipelineRun {
   FaultScore fault_score_;
   bool exclusion_excused_ = false;  ///< that of `true_mode_excluded` is
   std::optional<Index> violated_in_run_;
+  std::optional<Diagnosis> monitored_;  ///< the last one of the first seed
   Quantiles step_us_;
   DiagnosisOutcome found_;
 };

@@ -38,6 +38,7 @@ struct DiagnosisEvent {
   Index mode = -1;                      ///< index in the bank
   ModeEvidence evidence;                ///< detected, excluded: of that mode at k
   std::vector<FaultBound> faults = {};  ///< detected: bounds of additive faults without 0
+  Box estimate = {};  ///< isolated, resumed: of the state in `mode`; dimension 0: not estimated
 };
 std::string_view to_string(DiagnosisEvent::Kind kind) noexcept;
 
@@ -101,6 +102,12 @@ struct FaultOutside {
   std::int64_t seed_offset = 0;
 };
 
+/// Bounds of the state at time k, as long as the plant is in `mode`, which is monitored.
+struct MonitoredState {
+  Index k = 0, mode = 0;
+  Box hull;
+};
+
 /// What a diagnoser has found: in full for the first seed, counted over all.
 struct DiagnosisOutcome {
   std::string diagnoser;
@@ -121,6 +128,7 @@ struct DiagnosisOutcome {
   DelayStatistics detection, isolation;    ///< over all modes, `isolation` over those of the bank
   std::optional<TrueModeExcluded>
       true_mode_excluded;  ///< the first; makes `violated_at` for simulated data of a linear model
+  std::optional<MonitoredState> last_state;   ///< first seed, at its last step
   std::vector<FaultStatistics> faults;        ///< of diagnosers that bound additive faults
   std::optional<FaultOutside> fault_outside;  ///< the first; makes `violated_at` as well
 };
