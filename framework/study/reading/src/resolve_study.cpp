@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cmath>
 
 #include <nlohmann/json.hpp>
 
 #include "cordon/interfaces/nonlinear_model.hpp"
+#include "region_json.hpp"
 #include "resolve_sweep.hpp"
 #include "study/reading/read_parts.hpp"
 #include "study/text/json_writer.hpp"
@@ -97,23 +97,6 @@ Json to_json(const ComponentSpec& spec, const std::string& kind, const Registry&
   return object;
 }
 
-/// Bounds as they are written.
-Json bounds_of(const Box& box) {
-  const auto list = [](const Vector& bounds) {
-    Json all = Json::array();
-    for (const double x : bounds)
-      all.push_back(std::isinf(x) ? Json(x > 0 ? "inf" : "-inf") : Json(x));
-    return all;
-  };
-  return {{"lower", list(box.lower)}, {"upper", list(box.upper)}};
-}
-
-Json to_json(const ValidRegion& region) {
-  Json object{{"states", bounds_of(region.states)}, {"inputs", bounds_of(region.inputs)}};
-  if (region.nonlinear_outputs) object["nonlinear_outputs"] = true;
-  return object;
-}
-
 Json to_json(const Model& model) {
   const LinearModel& linear = model.linear;
   Json system;
@@ -131,7 +114,7 @@ Json to_json(const Model& model) {
   system["X0"] = to_json(model.X0);
   system["W"] = to_json(model.W);
   system["V"] = to_json(model.V);
-  if (model.region) system["region"] = to_json(*model.region);
+  if (model.region) system["region"] = region_json(*model.region);
   return system;
 }
 

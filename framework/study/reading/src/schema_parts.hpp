@@ -2,6 +2,10 @@
 // Pieces of the JSON Schema of studies.
 #pragma once
 
+#include <array>
+#include <string>
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 #include "cordon/registry/registry.hpp"
@@ -43,6 +47,9 @@ inline Json typed(const std::string& type, Json properties, std::vector<std::str
 
 /// The section "data".
 Json data();
+
+/// Systems by formulas: written in the study, or those of a plant.
+std::array<Json, 2> nonlinear_systems(const Json& names, const Json& sampling_time);
 
 /// Components of one kind: the name alone where no parameter is required, or an object by "type".
 Json components(const Registry& registry, const std::string& kind);
