@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -29,6 +30,24 @@ std::uint64_t asked(const char* variable, std::uint64_t otherwise) {
 
 using Json = nlohmann::ordered_json;
 
+void keep_failed(const Scratch& home, std::uint64_t number) {
+  const char* keep = std::getenv("CORDON_CAMPAIGN_KEEP");
+  if (!keep) return;
+  fs::create_directories(keep);
+  fs::copy(home.path(), fs::path(keep) / std::to_string(number),
+           fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+}
+
+/// Beside noise of 1e-9 what nominal sets of linear models say is rounding.
+Json with_noise(Json study) {
+  Json& system = study["system"];
+  for (const char* bound : {"lower", "upper"}) {
+    for (std::size_t i = 0; system.contains("V") && i < system["V"][bound].size(); ++i)
+      system["V"][bound][i] = bound == std::string("lower") ? -0.01 : 0.01;
+  }
+  return study;
+}
+
 /// The box of X0, and as much again on all sides.
 Json region_of(const Json& system) {
   Json region{{"states", {{"lower", Json::array()}, {"upper", Json::array()}}}};
@@ -48,7 +67,6 @@ Json region_of(const Json& system) {
 TEST_CASE("no truth of random formulas is lost, whatever the method") {
   const std::uint64_t first = asked("CORDON_CAMPAIGN_FIRST", 0),
                       count = asked("CORDON_CAMPAIGN_SYSTEMS", 30);
-  const char* keep = std::getenv("CORDON_CAMPAIGN_KEEP");
   std::uint64_t verified = 0, undecided = 0, refused = 0;
   for (std::uint64_t number = first; number < first + count; ++number) {
     CAPTURE(number);
@@ -73,11 +91,7 @@ TEST_CASE("no truth of random formulas is lost, whatever the method") {
       verified += outcome.code == 0 ? 1 : 0;
       undecided += outcome.code == 5 ? 1 : 0;
     }
-    if (keep && !holds) {
-      fs::create_directories(keep);
-      fs::copy(home.path(), fs::path(keep) / std::to_string(number),
-               fs::copy_options::recursive | fs::copy_options::overwrite_existing);
-    }
+    if (!holds) keep_failed(home, number);
   }
   MESSAGE(verified, " verified, ", undecided, " with results that are not decided, ", refused,
           " refused by the program");
@@ -92,7 +106,7 @@ TEST_CASE("no truth of random formulas is lost by linear models that are proven 
     CAPTURE(number);
     const Scratch home;
     const auto at = [&](const char* name) { return (home / name).string(); };
-    const Json study = cordon::campaigns::formula_study(number);
+    const Json study = with_noise(cordon::campaigns::formula_study(number));
     home.write("study.json", study.dump());
     home.write("region.json", region_of(study["system"]).dump());
     const Outcome linear = program("linearise " + at("study.json") + " --region " +
@@ -110,9 +124,13 @@ TEST_CASE("no truth of random formulas is lost by linear models that are proven 
     for (const Json& pipeline : results["pipelines"]) {
       const Json& summary = pipeline["summary"];
       estimates += summary["steps"].get<std::uint64_t>();
-      CHECK(summary["outside_from"].is_null());
-      CHECK(summary["failed_assumption"].is_null());
-      CHECK(summary["inconsistent_from"].is_null());
+      bool holds = true;
+      for (const char* none : {"outside_from", "failed_assumption", "inconsistent_from"}) {
+        CAPTURE(none);
+        CHECK(summary[none].is_null());
+        holds = holds && summary[none].is_null();
+      }
+      if (!holds) keep_failed(home, number);
     }
   }
   MESSAGE(made, " linear models of ", count, ", ", estimates, " estimates");
