@@ -191,6 +191,13 @@ TEST_CASE("who cannot keep to a region refuses it, and mistakes are told at thei
   intervals["system"]["type"] = "interval_lti";
   CHECK(Run(intervals, walk).outcome.out.find("/system/region") != std::string::npos);
   const Run run(study(), walk);
+  // The record leaves the region, of which no larger W is a consequence.
+  CHECK(run("identify s.json --trade-off").out.find("proven in a region, which data may leave") !=
+        std::string::npos);
+  const test::Outcome sought = run("identify s.json --json");
+  CAPTURE(sought.out);
+  CHECK(sought.code == 0);
+  CHECK(Json::parse(sought.out)["pipeline"] == "interval");
   const test::Outcome converted = run("convert s.json m.mat");
   CAPTURE(converted.out);
   CHECK(converted.code != 0);

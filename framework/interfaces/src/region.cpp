@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "cordon/core/error.hpp"
 #include "cordon/core/tolerances.hpp"
 
 namespace cordon::detail {
@@ -26,6 +27,9 @@ std::string why_outside(const Box& region, const Box& hull, const char* letter, 
 }  // namespace
 
 std::string why_outside(const ValidRegion& region, const Box& hull, const Sample& now) {
+  if (region.states.dim() != hull.dim() || region.inputs.dim() != now.u.size())
+    throw Error(Errc::dimension,
+                "the model's region has another dimension than its state or input");
   if (hull.is_empty()) return "";
   const std::string state = why_outside(region.states, hull, "x", now.k, "may be");
   return state.empty() ? why_outside(region.inputs, {now.u, now.u}, "u", now.k, "is") : state;

@@ -18,6 +18,7 @@ bool is_zonotope(const LineForm& X) { return X.lines() == 0 && X.constraints() =
 std::string why_not_identified(const Model& model) {
   if (!model.is_linear()) return "the system is written as formulas";
   if (model.linear.is_descriptor()) return "the system has an E";
+  if (model.region) return "the model is proven in a region, which data may leave";
   if (model.linear.is_uncertain() || model.linear.has_ranges())
     return "matrices of the system are known by intervals";
   if (!is_zonotope(model.W)) return "W is no zonotope, which generators with factors would be";

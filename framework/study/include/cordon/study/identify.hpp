@@ -46,8 +46,8 @@ struct IdentifyOptions {
   double seconds = 60;  ///< for the solver
 };
 
-/// Why these bounds are not found for the model; empty: they are. Linear models without intervals,
-/// E = I, W and V zonotopes, X0 without constraints.
+/// Why these bounds are not found for the model; empty: they are. Linear models without intervals
+/// and without a region, E = I, W and V zonotopes, X0 without constraints.
 std::string why_not_identified(const Model& model);
 
 /// One sparse linear program over all samples, which follow each other; O(N) columns and rows.
