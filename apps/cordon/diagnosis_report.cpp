@@ -113,6 +113,8 @@ std::string reason_text(const DiagnosisEvent& event, std::size_t modes) {
     case Kind::unknown_fault:
       return modes == 1 ? "the plant is outside the bank"
                         : "every mode is excluded: not yet identified, or none of these";
+    case Kind::left_open:
+      return "cannot be excluded any more: " + event.evidence.left_open;
     default:
       return "";
   }

@@ -30,6 +30,7 @@ struct VerifyArguments {
 /// is none is not proven again.
 bool is_checked(const VerifiedPipeline& p) {
   return p.asked_for && (p.kind == PipelineKind::estimation ||
+                         (p.kind == PipelineKind::diagnosis && !p.rests_on_more) ||
                          (p.kind == PipelineKind::design && p.proofs + p.undecided > 0));
 }
 
@@ -84,15 +85,21 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
           p.fails_again == Answer::yes ? " (proven again)" : "");
     }
     if (!is_checked(p)) {
-      passed_over +=
-          fmt::format("not re-checked: {} ({})\n", p.name,
-                      p.kind == PipelineKind::diagnosis ? "a diagnosis; its sets are not stored"
-                                                        : "nothing of its design is proven again");
+      passed_over += fmt::format("not re-checked: {} ({})\n", p.name,
+                                 p.kind == PipelineKind::diagnosis
+                                     ? "a diagnosis that rests on bounds of errors, or by an older "
+                                       "version"
+                                     : "nothing of its design is proven again");
       continue;
     }
     if (p.kind == PipelineKind::design)
       passed_over += fmt::format(
           "not re-checked: the experiments of {} (of its design, the separation is)\n", p.name);
+    if (p.kind == PipelineKind::diagnosis) {
+      passed_over +=
+          fmt::format("{} exclusions of modes and {} boxes of the state of {} are proven again\n",
+                      p.exclusions, p.states, p.name);
+    }
     if (p.exact_claims_unproven > 0) {
       passed_over += fmt::format(
           "not proven: {} claims of \"exact\" of {}, held against directions only, which can "
@@ -107,8 +114,8 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
     }
     rows.push_back({p.name, p.backend, std::string(to_string(p.rounding)), std::to_string(p.steps),
                     std::to_string(p.by_polytopes), std::to_string(p.by_supports),
-                    std::to_string(p.proofs), std::to_string(p.exact_claims),
-                    std::to_string(p.undecided)});
+                    std::to_string(p.proofs + p.exclusions + p.states),
+                    std::to_string(p.exact_claims), std::to_string(p.undecided)});
   }
   if (outcome.of_formulas) {
     passed_over += "successors by formulas are drawn: checked for some of them, not for all\n";
@@ -154,6 +161,8 @@ std::string report_json(const VerifyOutcome& outcome) {
                                    {"by_polytopes", p.by_polytopes},
                                    {"by_supports", p.by_supports},
                                    {"proofs", p.proofs},
+                                   {"exclusions", p.exclusions},
+                                   {"states", p.states},
                                    {"exact_claims", p.exact_claims},
                                    {"exact_claims_unproven", p.exact_claims_unproven},
                                    {"undecided", p.undecided},

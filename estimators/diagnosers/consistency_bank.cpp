@@ -19,6 +19,7 @@
 // decisions do not depend on the number of threads.
 #include <algorithm>
 #include <optional>
+#include <string>
 
 #include "components.hpp"
 #include "cordon/core/error.hpp"
@@ -38,9 +39,8 @@ class ConsistencyBank final : public Diagnoser {
  public:
   ConsistencyBank(const DiagnoserContext& context, const Params& params)
       : Diagnoser(context.bank, context.backend),
-        elimination_(
-            bank().size(), params.integer("waiting_time"),
-            params.text("start") == "nominal" ? std::optional(bank().nominal) : std::nullopt),
+        known_(params.text("start") == "nominal" ? std::optional(bank().nominal) : std::nullopt),
+        elimination_(bank().size(), params.integer("waiting_time"), known_),
         workers_(params.integer("threads")) {
     for (const Mode& mode : bank().modes) {
       observers_.push_back(
@@ -59,6 +59,16 @@ class ConsistencyBank final : public Diagnoser {
         all.push_back(of_mode(std::move(gain), bank()[j]));
     }
     return all;
+  }
+
+  std::optional<DiagnosisAssumptions> assumptions() const override {
+    DiagnosisAssumptions assumed{known_, {}};
+    for (std::size_t j = 0; j < observers_.size(); ++j) {
+      ModeAssumptions mode{observers_[j]->initial_set(), {}, observers_[j]->admissible_set()};
+      if (!restarts_.empty()) mode.restart_set = restarts_[j]->line_form();
+      assumed.modes.push_back(std::move(mode));
+    }
+    return assumed;
   }
 
   /// The set from which modes begin anew; none: they cannot.
@@ -91,7 +101,7 @@ class ConsistencyBank final : public Diagnoser {
 
   void do_start() override {
     for (const auto& observer : observers_) observer->start();
-    lost_.assign(observers_.size(), 0);
+    lost_.assign(observers_.size(), "");
     ended_ = unfinished_ = false;
   }
 
@@ -110,7 +120,7 @@ class ConsistencyBank final : public Diagnoser {
     result.reset = none_left && !restarts_.empty();
     if (result.reset) {
       for (std::size_t j = 0; j < observers_.size(); ++j) observers_[j]->start(restarts_[j]);
-      lost_.assign(observers_.size(), 0);
+      lost_.assign(observers_.size(), "");
       advance(
           now);  // what this sample alone excludes stays excluded, and is told with the next one
     }
@@ -123,7 +133,7 @@ class ConsistencyBank final : public Diagnoser {
     Estimates estimates(observers_.size());
     std::vector<std::size_t> running;
     for (std::size_t j = 0; j < observers_.size(); ++j) {
-      if (is_candidate(j) && lost_[j] == 0) running.push_back(j);
+      if (is_candidate(j) && lost_[j].empty()) running.push_back(j);
     }
     workers_.for_each(static_cast<Index>(running.size()), [&](Index i) {
       const std::size_t j = running[static_cast<std::size_t>(i)];
@@ -131,7 +141,7 @@ class ConsistencyBank final : public Diagnoser {
         estimates[j] = observers_[j]->step(now);
       } catch (const Error& error) {
         if (error.code() != Errc::not_enclosed) throw;
-        lost_[j] = 1;
+        lost_[j] = error.what();
       }
     });
     return estimates;
@@ -160,6 +170,7 @@ class ConsistencyBank final : public Diagnoser {
     result.modes.resize(estimates.size());
     for (std::size_t j = 0; j < estimates.size(); ++j) {
       result.modes[j].candidate = is_candidate(j);
+      if (result.modes[j].candidate) result.modes[j].left_open = lost_[j];
       if (estimates[j]) set_evidence(result.modes[j], *estimates[j]);
     }
     if (result.mode >= 0) {
@@ -177,12 +188,13 @@ class ConsistencyBank final : public Diagnoser {
     evidence.why = estimate.why;
   }
 
+  std::optional<Index> known_;  ///< the mode at the start
   ModeElimination elimination_;
   std::vector<std::shared_ptr<Observer>> observers_;
   std::vector<Enclosure> restarts_;  ///< from which modes begin anew; empty: they cannot
-  /// Whose formulas could not be enclosed any more, or whose model is not proven for the states
-  /// that the mode allows: they stay possible until a reset.
-  std::vector<char> lost_;
+  /// Why formulas could not be enclosed any more, or the model is not proven for the states that
+  /// the mode allows: the mode stays possible until a reset. "" for others.
+  std::vector<std::string> lost_;
   Index since_ = 0;          ///< first sample of the estimates
   bool ended_ = false;       ///< no mode is left and none can begin anew
   bool unfinished_ = false;  ///< a step ended with an error half way

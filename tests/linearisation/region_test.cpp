@@ -122,6 +122,17 @@ TEST_CASE("a mode whose region is not shown to hold is never excluded") {
     return found;
   };
   CHECK_FALSE(excludes(modes));
+  const Run bank(modes, data);
+  const Json told = bank.pipeline(0);
+  std::string reason;
+  for (const Json& event : told["summary"]["events"]) {
+    if (event["what"] == "left_open" && event["mode"] == "grows")
+      reason = std::to_string(event["k"].get<int>()) + ": " +
+               event["evidence"]["left_open"].get<std::string>();
+  }
+  CHECK(reason.find("2: the linear model is proven where -2 <= x1 <= 2") == 0);
+  CHECK(bank.outcome.out.find("left_open  grows") != std::string::npos);
+  CHECK(bank.outcome.out.find("cannot be excluded any more: the linear") != std::string::npos);
   modes["system"].erase("region");
   CHECK(excludes(modes));
 }

@@ -17,6 +17,9 @@ inline thread_local std::jmp_buf escape;
 inline thread_local unsigned environment =
     0;  ///< grows when the thread's environment was thrown away
 
+/// Says nothing: what breaks GLPK down is printed to the standard output else, whatever was set.
+inline int keep_silent(void*, const char*) { return 1; }
+
 [[noreturn]] inline void leave(void*) { std::longjmp(escape, 1); }
 
 /// GLPK frees nothing when a thread ends. Problems that outlive it are lost with its environment,
@@ -34,6 +37,7 @@ inline thread_local Reclaim reclaim;
 template <class Work>
 bool guarded(Work work) {
   reclaim.keep();  // made with the thread's first call
+  glp_term_hook(keep_silent, nullptr);
   glp_error_hook(leave, nullptr);
   if (setjmp(escape) != 0) {
     glp_error_hook(nullptr, nullptr);

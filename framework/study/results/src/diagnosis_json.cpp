@@ -28,7 +28,8 @@ void write(JsonWriter& json, const DiagnosisEvent& event, const Names& modes) {
   using Kind = DiagnosisEvent::Kind;
   json.begin_object().member("k", event.k).member("what", to_string(event.what));
   write_mode(json, "mode", modes, event.mode);
-  if (event.what == Kind::detected || event.what == Kind::excluded) {
+  if (event.what == Kind::detected || event.what == Kind::excluded ||
+      event.what == Kind::left_open) {
     json.key("evidence");
     write(json, event.evidence);
   }
@@ -151,6 +152,7 @@ void write(JsonWriter& json, const ModeEvidence& evidence) {
       .member("consistent", to_string(evidence.consistent));
   if (evidence.residual.dim() > 0) write_box(json, "residual", evidence.residual);
   if (evidence.reset_residual.dim() > 0) write_box(json, "reset_residual", evidence.reset_residual);
+  if (!evidence.left_open.empty()) json.member("left_open", evidence.left_open);
   if (evidence.why.kind != Certificate::Kind::none) {
     json.key("proof");
     write(json, evidence.why);
@@ -235,6 +237,24 @@ void write(JsonWriter& json, const Guarantees& guarantees, const Names& modes) {
   json.end_array().end_object();
 }
 
+void write(JsonWriter& json, const DiagnosisAssumptions& assumed, const Names& modes) {
+  json.begin_object(Layout::lines);
+  write_mode(json, "known_mode", modes, assumed.known_mode.value_or(-1));
+  json.key("modes").begin_array(Layout::lines);
+  for (const ModeAssumptions& mode : assumed.modes) {
+    json.begin_object().key("initial_set");
+    write(json, mode.initial_set);
+    for (const auto& [key, set] :
+         {std::pair("restart_set", &mode.restart_set), {"admissible_set", &mode.admissible_set}}) {
+      if (!*set) continue;
+      json.key(key);
+      write(json, **set);
+    }
+    json.end_object();
+  }
+  json.end_array().end_object();
+}
+
 }  // namespace cordon::detail
 
 namespace cordon {
@@ -259,6 +279,8 @@ std::string_view to_string(DiagnosisEvent::Kind kind) noexcept {
       return "ambiguous";
     case DiagnosisEvent::Kind::unknown_fault:
       return "unknown_fault";
+    case DiagnosisEvent::Kind::left_open:
+      return "left_open";
   }
   return "truth";
 }

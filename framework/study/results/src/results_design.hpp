@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cordon/core/types.hpp"
+#include "cordon/study/labels.hpp"
 #include "study/text/sink.hpp"
 
 namespace cordon::detail {

@@ -79,6 +79,12 @@ void Results::begin_diagnosis(const PipelineSpec& spec, std::optional<Rounding> 
   } else {
     results_.null();
   }
+  results_.key("assumptions");
+  if (outcome.assumptions) {
+    write(results_, *outcome.assumptions, outcome.modes);
+  } else {
+    results_.null();
+  }
   results_.key("steps").begin_array(Layout::lines);
 }
 

@@ -43,6 +43,7 @@ class DiagnosisRun final : public PipelineRun {
     diagnoser_ = context_.registry.make<DiagnoserEntry>(diagnoser_spec_.type, {bank_, backend()},
                                                         diagnoser_spec_.params);
     found_.guarantees = diagnoser_->guarantees();
+    found_.assumptions = diagnoser_->assumptions();
     PipelineAssumptions assumed = assumptions_of(diagnoser_spec_, rounding());
     const auto* const entry = context_.registry.entry<DiagnoserEntry>(diagnoser_spec_.type);
     using Modes = PipelineAssumptions::Modes;

@@ -107,10 +107,12 @@ void DiagnosisTimeline::step(const std::optional<Index>& truth, const Diagnosis&
   truth_ = truth;
   if (!before_) {
     tell({now.k, Kind::starts, now.mode, {}});
+    tell_left_open(now, tell);
     before_.emplace(now);
     return;
   }
   exclusions(now, tell);
+  tell_left_open(now, tell);
   const bool given_up = before_->is_given_up_in(now);
   if (given_up || now.decision != before_->decision) {
     switch (now.decision) {
@@ -129,6 +131,18 @@ void DiagnosisTimeline::step(const std::optional<Index>& truth, const Diagnosis&
     }
   }
   before_.emplace(now);
+}
+
+void DiagnosisTimeline::tell_left_open(const Diagnosis& now,
+                                       const std::function<void(DiagnosisEvent)>& tell) {
+  if (now.reset) left_open_.clear();
+  left_open_.resize(std::max(left_open_.size(), now.modes.size()));
+  for (std::size_t j = 0; j < now.modes.size(); ++j) {
+    const bool is_open = !now.reset && !now.modes[j].left_open.empty();
+    if (is_open && !left_open_[j])
+      tell({now.k, DiagnosisEvent::Kind::left_open, static_cast<Index>(j), now.modes[j]});
+    left_open_[j] = is_open;
+  }
 }
 
 void DiagnosisTimeline::exclusions(const Diagnosis& now,

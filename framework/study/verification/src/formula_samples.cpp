@@ -8,6 +8,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "mode_enclosure.hpp"
 #include "study/data/disturbance.hpp"
 #include "study/data/formula_source.hpp"
 
@@ -78,7 +79,8 @@ bool FormulaSamples::evaluate_outputs(const Box& around, const Sample& now) {
 
 bool FormulaSamples::explains(const Vector& x, const Sample& now) {
   const NonlinearModel& formulas = *model_.nonlinear;
-  const Vector room = nearby * x.cwiseAbs();
+  Vector room = nearby * x.cwiseAbs();
+  room.tail(formulas.parameters).setZero();  // which formulas keep as they are
   const Box around{x - room, x + room};
   if (formulas.admissible && is_subset(make_box(around), *formulas.admissible) != Answer::yes)
     return false;
@@ -137,6 +139,15 @@ std::optional<Vector> FormulaSamples::aimed(Draw from, const Sets& sets,
   return is_inside ? successor(from, before) : std::nullopt;
 }
 
+/// Parameters keep to their bounds, which sets hold up to rounding.
+Vector FormulaSamples::with_parameters_within(Vector x) const {
+  const Index count = model_.nonlinear->parameters;
+  const Box bounds = outward_hull(model_.X0);
+  x.tail(count) =
+      x.tail(count).cwiseMax(bounds.lower.tail(count)).cwiseMin(bounds.upper.tail(count));
+  return x;
+}
+
 std::vector<Vector> FormulaSamples::consistent(const LineForm& X, const Transition& transition) {
   const auto& [before, now] = transition;
   const Box hull = interval_hull(X), pushed = interval_hull(model_.W);
@@ -154,7 +165,7 @@ std::vector<Vector> FormulaSamples::consistent(const LineForm& X, const Transiti
     Disturbance pushes(model_.W, noise, RandomStream(seed_, Purpose::disturbance, stream), 0, "",
                        "");
     for (int i = 0; i < tries; ++i) {
-      const Draw draw{states.at(i), pushes.at(i)};
+      const Draw draw{with_parameters_within(states.at(i)), pushes.at(i)};
       std::optional<Vector> x = successor(draw, before);
       if (x && !explains(*x, now)) {
         x = aimed(draw, sets, transition);

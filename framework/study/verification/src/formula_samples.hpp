@@ -38,6 +38,7 @@ class FormulaSamples {
 
   std::vector<Vector> consistent(const LineForm& X, const Transition& transition);
   std::optional<Vector> successor(const Draw& from, const Sample* before);
+  Vector with_parameters_within(Vector x) const;
   std::optional<Vector> aimed(Draw from, const Sets& sets, const Transition& transition);
   bool evaluate_outputs(const Box& around, const Sample& now);
   bool explains(const Vector& x, const Sample& now);

@@ -120,6 +120,9 @@ class StepCheck {
   bool exact_holds_ = false, exact_stays_ = false;
 };
 
+/// Into vertices and inequalities? False: it cannot be.
+bool is_converted(const Polytope& F);
+
 /// Where the set before is not recorded: rounding is not taken to move anything.
 StepCheck::Successors unknown_successors(Index n);
 

@@ -315,4 +315,15 @@ void StepCheck::against(const std::vector<Vector>& states) {
     contains_vertex(rational::exact(states[i]), none);
 }
 
+bool is_converted(const Polytope& F) {
+  try {
+    F.representation().generators();
+    F.representation().inequalities();
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported) throw;
+    return false;
+  }
+  return true;
+}
+
 }  // namespace cordon::verification

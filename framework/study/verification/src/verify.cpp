@@ -7,19 +7,17 @@
 #include <fmt/format.h>
 
 #include "cddlib_listener.hpp"
-#include "cordon/core/column_elimination.hpp"
 #include "cordon/core/error.hpp"
-#include "cordon/core/exact_rank.hpp"
-#include "cordon/core/linalg.hpp"
 #include "cordon/study/data.hpp"
+#include "diagnosis_check.hpp"
+#include "directions.hpp"
 #include "fails_again.hpp"
 #include "feasible_sequence.hpp"
 #include "formula_samples.hpp"
-#include "solvers/polytope_representation.hpp"
+#include "mode_trajectories.hpp"
 #include "step_check.hpp"
 #include "study/checks/design_check.hpp"
 #include "study/checks/rounding_margin.hpp"
-#include "study/data/random.hpp"
 #include "study/results/recorded_run.hpp"
 #include "study/verification/enclosed_successors.hpp"
 #include "study/verification/feasible_set.hpp"
@@ -31,47 +29,10 @@ namespace {
 using namespace verification;
 using Clock = std::chrono::steady_clock;
 
-/// Are there directions that A takes to next to nothing, beside others or by entries that cancel,
-/// and not to nothing?
-bool hides_directions(const Matrix& A) {
-  constexpr double little = 1e-6;
-  const Index known =
-      std::min(ColumnElimination(A, A.cwiseAbs()).kept, linalg::range_basis(A, little).cols());
-  return known < A.cols() && known < rank_modulo_prime(A);
-}
-
 /// The step without its claim of `exact`.
 RecordedStep without_claim(RecordedStep step) {
   step.tightness = Tightness::outer;
   return step;
-}
-
-/// ±e_i and random directions, as columns.
-Matrix directions_of(Index n, const VerifyOptions& options, Index k) {
-  Matrix D(n, 2 * n + options.directions);
-  D.leftCols(n).setIdentity();
-  D.middleCols(n, n) = -Matrix::Identity(n, n);
-  detail::RandomStream random(options.seed, detail::Purpose::direction,
-                              static_cast<std::uint64_t>(k));
-  for (Index j = 2 * n; j < D.cols(); ++j) {
-    for (Index i = 0; i < n; ++i) D(i, j) = random.symmetric();
-  }
-  return D;
-}
-
-/// False where F cannot be converted into vertices and inequalities, which is found out before
-/// anything is checked.
-bool against_polytope(StepCheck& check, const Polytope& F,
-                      const StepCheck::Successors& successors) {
-  try {
-    F.representation().generators();
-    F.representation().inequalities();
-  } catch (const Error& error) {
-    if (error.code() != Errc::unsupported) throw;
-    return false;
-  }
-  check.against(F, successors);
-  return true;
 }
 
 class Verification {
@@ -114,6 +75,7 @@ class Verification {
       if (outcome_.violation) return;
       if (const RecordedDesign* const design = pipeline.design(); asked && design && design->design)
         check_input(p, *design);
+      if (pipeline.diagnosis() && asked) check_decisions(p);
       if (const RecordedEstimation* const estimation = pipeline.estimation()) {
         const bool serves = feasible && feasible->serves(*estimation) &&
                             feasible->complete(estimation->steps.size());
@@ -226,6 +188,19 @@ class Verification {
     }
   }
 
+  void check_decisions(std::size_t p) {
+    VerifiedPipeline& found = outcome_.pipelines.back();
+    const RecordedDiagnosis& diagnosis = *run_.pipelines[p].diagnosis();
+    found.rests_on_more = !diagnosis.assumptions;
+    if (found.rests_on_more) return;
+    const auto total = std::ssize(diagnosis.steps);
+    outcome_.violation = check_diagnosis(run_, p, options_, found, [&](std::int64_t done) {
+      outcome_.interrupted = options_.stop && options_.stop->load();
+      if (options_.progress) options_.progress(names_, p, done, total);
+      return !outcome_.interrupted;
+    });
+  }
+
   /// The next sample up to step i of the pipeline, without what that has left out.
   Sample sample_of(std::size_t p, std::size_t i, std::optional<Record> record) const {
     const RecordedPipeline& pipeline = run_.pipelines[p];
@@ -251,6 +226,7 @@ class Verification {
     std::optional<RecordedSet> row, row_before;
     std::optional<detail::RoundingMargin> rounding;
     rounding.emplace(run_.model, estimation.initial_set, pipeline.rounding);
+    formulas_.reset();
     std::size_t read = 0;
     Clock::time_point told = Clock::now();
     for (std::size_t i = 0; i < estimation.steps.size(); ++i) {
@@ -265,6 +241,7 @@ class Verification {
         before = std::move(sample);
         sample = sample_of(p, i, data->next());
         if (feasible && !is_late()) F = feasible->at(read++, *sample);
+        if (feasible) follow_formulas(estimation, i, *sample);
       }
       row_before = std::move(row);
       row = set_of(pipeline, step);
@@ -300,6 +277,16 @@ class Verification {
     if (options_.progress) options_.progress(names_, p, total, total);
   }
 
+  /// Up to the sample, from where step i begins anew or follows.
+  void follow_formulas(const RecordedEstimation& estimation, std::size_t i, const Sample& sample) {
+    if (run_.model.is_linear()) return;
+    const bool anew = estimation.begins_anew(i) && sample.k == estimation.steps[i].k;
+    if (!formulas_ || anew)
+      formulas_.emplace(run_.model, anew ? *estimation.restart_set : estimation.initial_set,
+                        estimation.admissible_set);
+    formulas_->step(sample);
+  }
+
   struct Margins {
     Vector states, outputs;
   };
@@ -307,7 +294,8 @@ class Verification {
   /// Of matrices that are known by intervals, for two draws.
   template <class SuccessorsIn>
   void check_in_directions(StepCheck& check, Index k, bool follows_its_sets, SuccessorsIn&& in) {
-    const Matrix directions = directions_of(run_.model.states(), options_, k);
+    const Matrix directions =
+        directions_of(run_.model.states(), options_.directions, options_.seed, k);
     Model model = run_.model;
     for (int draw = 0; draw < (model.linear.is_uncertain() ? 2 : 1); ++draw) {
       model.linear = drawn(run_.model.linear, k, draw);
@@ -346,13 +334,14 @@ class Verification {
     };
     const bool follows = i == 0 || anew || row_before;
     if (!check.violation()) {
-      if (!run_.model.is_linear()) {
+      if (formulas_ && step.consistent == Answer::no && formulas_->proves_none(options_.deadline)) {
+        ++found.proofs;
+      } else if (!run_.model.is_linear()) {
         if (!samples_) samples_.emplace(run_.model, options_.seed);
         const bool asked = follows && (estimation.follows_its_sets || !row_before);
         found.by_supports += samples_->check(check, asked ? &start : nullptr, transition) ? 1 : 0;
-      } else if (F && against_polytope(check, *F,
-                                       follows ? successors_in(run_.model)
-                                               : unknown_successors(row.set.dim()))) {
+      } else if (F && is_converted(*F)) {
+        check.against(*F, follows ? successors_in(run_.model) : unknown_successors(row.set.dim()));
         ++found.by_polytopes;
       } else if (!follows) {
         check.skipped("the step does not follow the one before: its successors are not checked");
@@ -380,8 +369,9 @@ class Verification {
   const VerifyOptions& options_;
   SetReader sets_;
   std::vector<std::string> names_;
-  std::optional<FormulaSamples> samples_;  ///< of a model by formulas
-  bool late_ = false;                      ///< the deadline has passed
+  std::optional<FormulaSamples> samples_;     ///< of a model by formulas
+  std::optional<ModeTrajectories> formulas_;  ///< the same, of the pipeline
+  bool late_ = false;                         ///< the deadline has passed
   VerifyOutcome outcome_;
   std::optional<CddlibListener> cddlib_;
 };

@@ -54,6 +54,7 @@ std::vector<Mark> marks_of(const RunFiles& files, std::size_t pipeline) {
       std::string text = what == "unknown_fault" ? "unknown fault" : what;
       if (what == "detected") text += ": departure from " + mode;
       if (what == "isolated" || what == "resumed") text += ": " + mode;
+      if (what == "left_open") text = "cannot be excluded any more: " + mode;
       marks.push_back({value_of(event, "k"), text, static_cast<int>(pipeline)});
     }
   }
@@ -74,6 +75,7 @@ std::string evidence_of(const RunFiles& files, const Cursor& event) {
   }
   if (!text.empty()) return text;
   const auto evidence = object_of(event, "evidence");
+  if (evidence && evidence->find("left_open")) return text_of(*evidence, "left_open");
   const auto proof = evidence ? object_of(*evidence, "proof") : std::nullopt;
   if (!proof) return "";
   const double margin = value_of(*proof, "margin");

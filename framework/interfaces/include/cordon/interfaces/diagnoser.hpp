@@ -33,6 +33,9 @@ struct ModeEvidence {
   Box residual;        ///< hull of what has to contain 0 (dimension 0: not offered)
   Box reset_residual;  ///< the same of the copy that was made at the last reset, on which
                        ///< exclusions rest (dimension 0: none)
+  /// Why no later sample excludes the mode until a reset, as that its equations could not be
+  /// enclosed any more; "": it may.
+  std::string left_open = {};
 };
 
 /// Bounds of one additive fault at one time, proven by the samples up to now.
@@ -96,6 +99,20 @@ struct Guarantees {
   std::vector<FaultGuarantee> faults = {};
 };
 
+/// What exclusions of one mode and estimates in it rest on, beside its model and the samples since.
+struct ModeAssumptions {
+  LineForm initial_set;                         ///< holds the state at the first sample
+  std::optional<LineForm> restart_set = {};     ///< and at a reset; none: there is no reset
+  std::optional<LineForm> admissible_set = {};  ///< and at all times
+};
+
+/// Of a diagnoser whose statements follow from the modes' equations, bounds and samples: a mode is
+/// excluded where no state of these sets and no w ∈ W, v ∈ V make the samples since.
+struct DiagnosisAssumptions {
+  std::optional<Index> known_mode = {};  ///< the plant's at the start; none: any
+  std::vector<ModeAssumptions> modes;    ///< of all modes of the bank
+};
+
 /// Decides, sample by sample, which modes of a bank are possible. The base class checks samples and
 /// keeps the previous one.
 class Diagnoser {
@@ -120,6 +137,9 @@ class Diagnoser {
   /// Does it take samples with missing outputs, and exclude only what the outputs that are there
   /// contradict? Otherwise `step` refuses such samples.
   bool takes_missing_outputs() const { return do_takes_missing_outputs(); }
+
+  /// Nothing where statements rest on more, as on bounds of errors: they are not checked again.
+  virtual std::optional<DiagnosisAssumptions> assumptions() const { return std::nullopt; }
 
   /// How many steps after `start` the last sample is that it makes use of; nothing: there is no
   /// last one.

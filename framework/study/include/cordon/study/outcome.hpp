@@ -23,20 +23,21 @@ struct AnswerCount {
 /// Something that changed at time k: in the plant, or in what a diagnoser says of it.
 struct DiagnosisEvent {
   enum class Kind {
-    truth,         ///< the plant is in `mode` from k on (-1: outside the bank)
-    starts,        ///< the first decision; `mode` if it is `monitoring`
-    detected,      ///< `mode` was monitored, and is excluded
-    excluded,      ///< so is `mode`
-    isolated,      ///< `mode` is monitored from now on: all others are excluded
-    resumed,       ///< `mode`, the only one of the bank, is monitored again: it is not excluded
-    isolating,     ///< several modes are possible again
-    ambiguous,     ///< several are left after the waiting time
-    unknown_fault  ///< none is
+    truth,          ///< the plant is in `mode` from k on (-1: outside the bank)
+    starts,         ///< the first decision; `mode` if it is `monitoring`
+    detected,       ///< `mode` was monitored, and is excluded
+    excluded,       ///< so is `mode`
+    isolated,       ///< `mode` is monitored from now on: all others are excluded
+    resumed,        ///< `mode`, the only one of the bank, is monitored again: it is not excluded
+    isolating,      ///< several modes are possible again
+    ambiguous,      ///< several are left after the waiting time
+    unknown_fault,  ///< none is
+    left_open       ///< `mode` is not excluded by what follows, until a reset
   };
   Index k = 0;
   Kind what = Kind::truth;
   Index mode = -1;                      ///< index in the bank
-  ModeEvidence evidence;                ///< detected, excluded: of that mode at k
+  ModeEvidence evidence;                ///< detected, excluded, left_open: of that mode at k
   std::vector<FaultBound> faults = {};  ///< detected: bounds of additive faults without 0
   Box estimate = {};  ///< isolated, resumed: of the state in `mode`; dimension 0: not estimated
 };
@@ -113,6 +114,7 @@ struct DiagnosisOutcome {
   std::string diagnoser;
   std::vector<std::string> modes;  ///< names, in the order of the bank
   std::optional<Guarantees> guarantees;
+  std::optional<DiagnosisAssumptions> assumptions;
   std::vector<DiagnosisEvent> events;  ///< first seed
   std::vector<DiagnosisSegment>
       segments;               ///< first seed; none if the data do not tell the true mode

@@ -45,13 +45,18 @@ struct Violation {
 struct VerifiedPipeline {
   std::string name, backend;
   Rounding rounding = Rounding::nominal;
-  PipelineKind kind = PipelineKind::estimation;  ///< of a diagnosis no sets are stored
-  bool asked_for = true;                         ///< else nothing of it is checked
-  std::int64_t steps = 0;                        ///< checked
-  std::int64_t by_polytopes = 0;                 ///< of them against the exact feasible set
+  PipelineKind kind = PipelineKind::estimation;
+  /// A diagnosis whose exclusions rest on more than equations, bounds and samples: none of them is
+  /// checked.
+  bool rests_on_more = false;
+  bool asked_for = true;          ///< else nothing of it is checked
+  std::int64_t steps = 0;         ///< checked
+  std::int64_t by_polytopes = 0;  ///< of them against the exact feasible set
   std::int64_t by_supports =
-      0;                    ///< of them against the successors of the set before, in directions
-  std::int64_t proofs = 0;  ///< proofs of (non-)emptiness and of bounds that hold
+      0;                        ///< of them against the successors of the set before, in directions
+  std::int64_t proofs = 0;      ///< proofs of (non-)emptiness and of bounds that hold
+  std::int64_t exclusions = 0;  ///< of modes, proven again
+  std::int64_t states = 0;      ///< boxes that a diagnosis tells of the state, proven again
   std::int64_t exact_claims = 0;  ///< claims of `exact` that are true
   /// Those that directions do not refute, or that there is nothing to compare with: no state is
   /// consistent with model and data, perhaps since data are rounded.
@@ -108,6 +113,11 @@ struct VerifyOutcome {
 /// but an estimate that holds F_k may still miss others. Claims of `exact` stay undecided there.
 /// Of a model by formulas, drawn successors of X_{k-1} that are proven consistent with y_k have to
 /// lie in X_k and its hull, in rational arithmetic; where none is found the step is undecided.
+/// Of a diagnosis by sets (`consistency_bank`): its decisions follow from its exclusions, and these
+/// and the state that it tells from the mode's equations, bounds and samples alone. Linear rows
+/// that all trajectories of the mode keep to have no solution, by multipliers checked in rational
+/// arithmetic; formulas are enclosed over boxes for that. Where that fails for a linear mode of up
+/// to 4 states, exact polytopes decide, and refute.
 /// With `second_opinion`, every conversion of a polyhedron and every exact linear program is
 /// answered by cddlib once more, up to a size; the checks go on with the project's own answers.
 /// That takes a lock in this process, and up to about 5 s during which `stop` is not looked at.

@@ -30,6 +30,14 @@ std::optional<Enum> read_word(const json::Cursor& object, const char* key,
 /// modes, in the order of the bank; what is said of an input that is not there is refused.
 RecordedDesign read_designed(const json::Cursor& pipeline, const json::SystemPart& system);
 
+/// A step of a diagnosis; its mode is a name still.
+std::optional<RecordedDiagnosis::Step> read_diagnosed_step(const json::Cursor& at);
+
+/// "modes", "assumptions", and where the summary tells the state. Steps are checked against the
+/// modes.
+RecordedDiagnosis read_diagnosed(const json::Cursor& pipeline, const json::SystemPart& system,
+                                 std::vector<RecordedDiagnosis::Step> steps);
+
 /// Where "last", "summary" and "numbers" say what the steps do not.
 std::vector<Diagnostic> contradictions_of(const json::Cursor& pipeline,
                                           const std::vector<RecordedStep>& steps);

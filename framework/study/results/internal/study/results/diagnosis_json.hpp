@@ -35,4 +35,7 @@ void write_members(JsonWriter& json, const DiagnosisOutcome& outcome);
 
 void write(JsonWriter& json, const Guarantees& guarantees, const std::vector<std::string>& modes);
 
+void write(JsonWriter& json, const DiagnosisAssumptions& assumed,
+           const std::vector<std::string>& modes);
+
 }  // namespace cordon::detail

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cordon/interfaces/diagnoser.hpp"
 #include "cordon/study/design.hpp"
 #include "cordon/study/pipeline_task.hpp"
 #include "cordon/study/study.hpp"
@@ -51,8 +52,25 @@ struct RecordedEstimation {
   }
 };
 
-/// Nothing is read: no sets are stored.
-struct RecordedDiagnosis {};
+/// No sets are stored: which modes are excluded when, and where the state is said to be.
+struct RecordedDiagnosis {
+  struct Step {
+    Index k = 0, since = 0;
+    bool reset = false;
+    std::string mode = {};                            ///< "" for none
+    std::vector<char> candidate = {}, excluded = {};  ///< by mode; excluded by this step
+    int line = 0;                                     ///< of the file
+  };
+  /// A box that holds the state as long as the plant is in the mode.
+  struct Estimate {
+    Index k = 0, mode = 0;
+    Box hull;
+    std::string pointer;
+  };
+  std::optional<DiagnosisAssumptions> assumptions;  ///< none: nothing can be checked
+  std::vector<Step> steps;
+  std::vector<Estimate> estimates;
+};
 
 struct RecordedDesign {
   /// Horizon, input, what is said of pairs and tubes; nothing: there is no input.

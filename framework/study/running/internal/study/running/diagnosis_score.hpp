@@ -67,8 +67,11 @@ class DiagnosisTimeline {
  private:
   void exclusions(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell);
 
+  void tell_left_open(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell);
+
   std::optional<DiagnosisBefore> before_;
   std::optional<Index> truth_;
+  std::vector<char> left_open_;  ///< by mode
   /// Exclusions since the last reset outside the bank, told when they lead to another decision.
   std::vector<DiagnosisEvent> untold_;
 };
