@@ -139,7 +139,11 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
   if (at.find("designer")) {
     pipeline.task = read_designed(at, system);
   } else if (at.find("diagnoser")) {
-    pipeline.task = read_diagnosed(at, system, steps.of_diagnosis(at, index));
+    const auto assumed = at.find("assumptions");  // without them nothing is made of the steps
+    const bool is_read = assumed && !assumed->is(Kind::null);
+    pipeline.task = read_diagnosed(
+        at, system,
+        is_read ? steps.of_diagnosis(at, index) : std::vector<RecordedDiagnosis::Step>{});
   } else {
     const Index n = system.model.states();
     auto estimation = read_estimation(at, n, steps.of(at, index, n, system.model.outputs()));
