@@ -22,17 +22,17 @@ class ExactTrajectories {
   using Deadline = std::optional<std::chrono::steady_clock::time_point>;
   /// The hull of the last states: none where it is not known. `samples`: those of before, and more.
   std::optional<Box> hull(const std::vector<Sample>& samples, const Deadline& deadline) {
-    return hull(whole_, samples, deadline);
+    return hull(whole_.get(), samples, deadline);
   }
   /// The same with all sets a millionth smaller about their centres: what lies in it is no matter
   /// of rounding.
   std::optional<Box> inner_hull(const std::vector<Sample>& samples, const Deadline& deadline) {
-    return hull(smaller_, samples, deadline);
+    return hull(smaller_.get(), samples, deadline);
   }
 
  private:
   struct Sequence;
-  static std::optional<Box> hull(std::unique_ptr<Sequence>& of, const std::vector<Sample>& samples,
+  static std::optional<Box> hull(Sequence* of, const std::vector<Sample>& samples,
                                  const Deadline& deadline);
 
   std::unique_ptr<Sequence> whole_, smaller_;

@@ -8,7 +8,6 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/solvers/set_questions.hpp"
-#include "mode_enclosure.hpp"
 #include "study/data/disturbance.hpp"
 #include "study/data/formula_source.hpp"
 
@@ -142,9 +141,9 @@ std::optional<Vector> FormulaSamples::aimed(Draw from, const Sets& sets,
 /// Parameters keep to their bounds, which sets hold up to rounding.
 Vector FormulaSamples::with_parameters_within(Vector x) const {
   const Index count = model_.nonlinear->parameters;
-  const Box bounds = outward_hull(model_.X0);
-  x.tail(count) =
-      x.tail(count).cwiseMax(bounds.lower.tail(count)).cwiseMin(bounds.upper.tail(count));
+  const Vector center = model_.X0.c.tail(count),
+               radius = model_.X0.G.bottomRows(count).cwiseAbs().rowwise().sum();
+  x.tail(count) = x.tail(count).cwiseMax(center - radius).cwiseMin(center + radius);
   return x;
 }
 

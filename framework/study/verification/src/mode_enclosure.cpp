@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mode_enclosure.hpp"
+#include "study/verification/mode_enclosure.hpp"
 
 #include <algorithm>
 
 #include "cordon/core/interval.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
+#include "cordon/solvers/outward_questions.hpp"
 
 namespace cordon::verification {
 
@@ -64,24 +65,8 @@ bool is_defined(Interval x) { return x.lower > -infinity || x.upper < infinity; 
 
 }  // namespace
 
-Box outward_hull(const LineForm& set) {
-  if (set.lines() > 0)
-    return {Vector::Constant(set.dim(), -infinity), Vector::Constant(set.dim(), infinity)};
-  Box hull{Vector(set.dim()), Vector(set.dim())};
-  for (Index i = 0; i < set.dim(); ++i) {
-    Interval side = point(set.c[i]);
-    for (Index j = 0; j < set.generators(); ++j) {
-      const double g = std::abs(set.G(i, j));
-      side = side + Interval{-g, g};
-    }
-    hull.lower[i] = side.lower;
-    hull.upper[i] = side.upper;
-  }
-  return hull;
-}
-
 ModeEnclosure::ModeEnclosure(const Model& model)
-    : model_(model), W_(outward_hull(model.W)), V_(outward_hull(model.V)) {
+    : model_(model), W_(outward::interval_hull(model.W)), V_(outward::interval_hull(model.V)) {
   if (model.is_linear()) return;
   const NonlinearModel& own = *model.nonlinear;
   constexpr auto form = formulas::AffineForm::convex_differences;
@@ -180,7 +165,7 @@ std::optional<EnclosedRows> ModeEnclosure::successors(const Box& x, const Sample
 
 Box ModeEnclosure::reached(const EnclosedRows& rows, const Box& x) const {
   const Index n = x.dim();
-  Box hull{Vector::Constant(n, -infinity), Vector::Constant(n, infinity)};
+  Box hull = Box::space(n);
   if (model_.is_linear() && model_.linear.is_descriptor()) return hull;
   for (Index i = 0; i < n; ++i) {
     Interval sum = others(rows.slopes, i, x, W_, -1) + rows.rest[as_size(i)];

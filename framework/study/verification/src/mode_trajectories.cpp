@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mode_trajectories.hpp"
+#include "study/verification/mode_trajectories.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include "trajectory_program.hpp"
+#include "cordon/solvers/outward_questions.hpp"
+#include "study/verification/trajectory_program.hpp"
 
 namespace cordon::verification {
 
@@ -41,7 +42,9 @@ ModeTrajectories::ModeTrajectories(const Model& model, LineForm start,
     : model_(model),
       start_(std::move(start)),
       admissible_(std::move(admissible)),
-      admissible_hull_(outward_hull(admissible_ ? *admissible_ : make_space(start_.dim()))),
+      space_(Box::space(start_.dim())),
+      start_hull_(outward::interval_hull(start_)),
+      admissible_hull_(admissible_ ? outward::interval_hull(*admissible_) : space_),
       enclosure_(model) {}
 
 /// The linear model is one of the formulas only as long as the state keeps to its region.
@@ -55,13 +58,12 @@ void ModeTrajectories::watch_region(const Box& x, const Sample& now) {
 
 void ModeTrajectories::step(const Sample& now) {
   if (none_left_) return;
-  Box x = outward_hull(start_);
+  Box x = start_hull_;
   if (!stages_.empty()) {
     Stage& before = stages_.back();
     watch_region(before.x, before.sample);
     before.successors = enclosure_.successors(before.x, before.sample);
-    x = before.successors ? enclosure_.reached(*before.successors, before.x)
-                          : outward_hull(make_space(x.dim()));
+    x = before.successors ? enclosure_.reached(*before.successors, before.x) : space_;
   }
   x = common_part(x, admissible_hull_);
   if (model_.region && model_.region->nonlinear_outputs) watch_region(x, now);
@@ -88,8 +90,7 @@ std::optional<ModeTrajectories::Window> ModeTrajectories::window(std::size_t fir
     const Stage& stage = stages_[j];
     // exact rows say what bounds behind the first ones do, and proofs leave free states out
     const bool by_rows = j > first && model_.is_linear() && !model_.linear.is_descriptor();
-    const Index before = made.last,
-                x = made.last = program.columns(by_rows ? outward_hull(make_space(n)) : stage.x);
+    const Index before = made.last, x = made.last = program.columns(by_rows ? space_ : stage.x);
     TrajectoryProgram::States states{x, -1, Matrix(), -1, stage.outputs.slopes.leftCols(n)};
     if (j > first && stages_[j - 1].successors) {
       const EnclosedRows& rows = *stages_[j - 1].successors;

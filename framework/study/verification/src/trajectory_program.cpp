@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "trajectory_program.hpp"
+#include "study/verification/trajectory_program.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solvers/rational.hpp"
-#include "trajectory_program.hpp"
+#include "study/verification/trajectory_program.hpp"
 
 namespace cordon::verification {
 

@@ -14,13 +14,13 @@
 #include "fails_again.hpp"
 #include "feasible_sequence.hpp"
 #include "formula_samples.hpp"
-#include "mode_trajectories.hpp"
 #include "step_check.hpp"
 #include "study/checks/design_check.hpp"
 #include "study/checks/rounding_margin.hpp"
 #include "study/results/recorded_run.hpp"
 #include "study/verification/enclosed_successors.hpp"
 #include "study/verification/feasible_set.hpp"
+#include "study/verification/mode_trajectories.hpp"
 
 namespace cordon {
 

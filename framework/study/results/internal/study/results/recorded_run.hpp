@@ -37,8 +37,8 @@ struct RecordedEstimation {
   LineForm initial_set;
   std::optional<LineForm> admissible_set;
   std::optional<LineForm> restart_set = {};  ///< where it begins anew after an empty estimate
-  std::vector<RecordedStep> steps;
-  std::vector<Diagnostic> contradictions;  ///< where the summary says what the steps do not
+  std::vector<RecordedStep> steps = {};
+  std::vector<Diagnostic> contradictions = {};  ///< where the summary says what the steps do not
 
   /// Does the observer begin anew with step i > 0?
   bool begins_anew(std::size_t i) const {
@@ -67,9 +67,16 @@ struct RecordedDiagnosis {
     Box hull;
     std::string pointer;
   };
+  /// What the summary says of a mode at one time.
+  struct Event {
+    Index k = 0, mode = 0;
+    bool isolates = false;  ///< else it excludes
+    std::string pointer;
+  };
   std::optional<DiagnosisAssumptions> assumptions;  ///< none: nothing can be checked
   std::vector<Step> steps;
   std::vector<Estimate> estimates;
+  std::vector<Event> events;
 };
 
 struct RecordedDesign {

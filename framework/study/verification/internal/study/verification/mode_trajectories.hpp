@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "mode_enclosure.hpp"
-#include "trajectory_program.hpp"
+#include "study/verification/mode_enclosure.hpp"
+#include "study/verification/trajectory_program.hpp"
 
 namespace cordon::verification {
 
@@ -58,7 +58,7 @@ class ModeTrajectories {
   const Model& model_;
   LineForm start_;
   std::optional<LineForm> admissible_;
-  Box admissible_hull_;
+  Box space_, start_hull_, admissible_hull_;
   ModeEnclosure enclosure_;
   std::deque<Stage> stages_;  ///< the last ones
   bool is_whole_ = true;      ///< all of them

@@ -57,7 +57,4 @@ class ModeEnclosure {
   std::optional<Formulas> formulas_;
 };
 
-/// The interval hull of a set in exchange form, rounded outward; of one with lines, the space.
-Box outward_hull(const LineForm& set);
-
 }  // namespace cordon::verification
