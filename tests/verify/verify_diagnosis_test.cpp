@@ -171,6 +171,28 @@ TEST_CASE("decisions follow from exclusions alone") {
   CHECK(outcome.complains("speaks of the time since k = 1"));
 }
 
+TEST_CASE("the summary says what the steps do") {
+  const auto changed = [](const char* what, const std::function<void(Json & event)>& change) {
+    return linear_run().verify_after([&](Json& pipeline) {
+      for (Json& event : pipeline["summary"]["events"]) {
+        if (event["what"] != what) continue;
+        change(event);
+        return;
+      }
+    });
+  };
+  Outcome outcome = changed("excluded", [](Json& event) { event["mode"] = "healthy"; });
+  CHECK(outcome.code == violated);
+  CHECK(outcome.complains("mode \"healthy\" is not excluded by the steps"));
+  outcome = changed("isolated", [](Json& event) { event["mode"] = "still"; });
+  CHECK(outcome.code == violated);
+  CHECK(outcome.complains("mode \"still\" is not isolated by the steps"));
+  outcome = linear_run().verify_after(
+      [](Json& pipeline) { pipeline["summary"]["last_state"]["mode"] = "healthy"; });
+  CHECK(outcome.code == violated);
+  CHECK(outcome.complains("/pipelines/0/summary/last_state/hull"));
+}
+
 TEST_CASE("a state that is told too narrowly is refuted") {
   const Outcome outcome = linear_run().verify_after([](Json& pipeline) {
     Json& hull = pipeline["summary"]["last_state"]["hull"];

@@ -9,7 +9,7 @@
 
 #include "cordon/study/data.hpp"
 #include "exact_trajectories.hpp"
-#include "mode_trajectories.hpp"
+#include "study/verification/mode_trajectories.hpp"
 
 namespace cordon::verification {
 
@@ -40,6 +40,7 @@ class DiagnosisCheck {
 
   std::optional<Violation> check(const std::function<bool(std::int64_t)>& goes_on) {
     follow_decisions();
+    follow_summary();
     if (violation_) return violation_;
     Study study;
     study.file = run_.files.directory() / "results.json";
@@ -109,7 +110,6 @@ class DiagnosisCheck {
         return violated(i, fmt::format("mode \"{}\" is isolated, and mode \"{}\" is {}", step.mode,
                                        name(j), left[as_size(j)] ? "not excluded" : "excluded"));
       }
-      take_estimates(step);
       if (!step.reset) continue;
       left.assign(as_size(count), 1);
       since = step.k;
@@ -123,10 +123,34 @@ class DiagnosisCheck {
     return left;
   }
 
-  void take_estimates(const Step& step) {
+  const Step* step_at(Index k) const {
+    const auto& steps = recorded_.steps;
+    const auto at = std::lower_bound(steps.begin(), steps.end(), k,
+                                     [](const Step& step, Index time) { return step.k < time; });
+    return at != steps.end() && at->k == k ? &*at : nullptr;
+  }
+
+  /// The summary says of modes and states what the steps do.
+  void follow_summary() {
+    const auto contradicts = [&](Index k, Index j, const char* what, const std::string& pointer) {
+      if (!violation_)
+        violation_ = {found_.name, k,
+                      fmt::format("mode \"{}\" is not {} by the steps", name(j), what), pointer};
+    };
+    for (const RecordedDiagnosis::Event& event : recorded_.events) {
+      const Step* const step = step_at(event.k);
+      if (event.isolates && (!step || step->mode != name(event.mode)))
+        contradicts(event.k, event.mode, "isolated", event.pointer);
+      if (!event.isolates && (!step || !step->excluded[as_size(event.mode)]))
+        contradicts(event.k, event.mode, "excluded", event.pointer);
+    }
     for (const Estimate& estimate : recorded_.estimates) {
-      if (estimate.k == step.k && name(estimate.mode) == step.mode)
-        claims_[step.since][estimate.mode].estimates.push_back(&estimate);
+      const Step* const step = step_at(estimate.k);
+      if (step && step->mode == name(estimate.mode)) {
+        claims_[step->since][estimate.mode].estimates.push_back(&estimate);
+      } else {
+        contradicts(estimate.k, estimate.mode, "isolated", estimate.pointer);
+      }
     }
   }
 

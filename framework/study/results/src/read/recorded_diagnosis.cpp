@@ -80,6 +80,17 @@ void read_estimate(const Cursor& at, const char* key, Index n,
   if (k && mode && hull) to.estimates.push_back({*k, *mode, std::move(*hull), box->pointer()});
 }
 
+void read_event(const Cursor& event, const std::vector<std::string>& names, RecordedDiagnosis& to) {
+  const auto what_at = event.need("what", not_as_written);
+  const auto what = what_at ? read_text(*what_at, 100) : std::nullopt;
+  const bool isolates = what && (*what == "isolated" || *what == "resumed");
+  if (!isolates && !(what && (*what == "excluded" || *what == "detected"))) return;
+  const auto k_at = event.need("k", not_as_written), mode_at = event.need("mode", not_as_written);
+  const auto k = k_at ? read_integer(*k_at, 0, max_integer) : std::nullopt;
+  const auto mode = mode_at ? read_mode_name(*mode_at, names) : std::nullopt;
+  if (k && mode) to.events.push_back({*k, *mode, isolates, event.pointer()});
+}
+
 void read_estimates(const Cursor& pipeline, Index n, const std::vector<std::string>& names,
                     RecordedDiagnosis& to) {
   const auto summary = pipeline.find("summary");
@@ -87,8 +98,9 @@ void read_estimates(const Cursor& pipeline, Index n, const std::vector<std::stri
   const auto events = summary->find("events"), last = summary->find("last_state");
   for (std::size_t i = 0; events && events->is(Kind::array) && i < events->size(); ++i) {
     const Cursor event = events->item(i);
-    if (event.is(Kind::object) && event.find("estimate"))
-      read_estimate(event, "estimate", n, names, to);
+    if (!event.expect(Kind::object, not_as_written)) continue;
+    read_event(event, names, to);
+    if (event.find("estimate")) read_estimate(event, "estimate", n, names, to);
   }
   if (last && last->is(Kind::object)) read_estimate(*last, "hull", n, names, to);
 }
