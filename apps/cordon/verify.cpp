@@ -280,8 +280,9 @@ CORDON_COMMAND(verify) {
       "assumptions allow, that the stored proofs hold, and that claims of \"exact\" are true; of "
       "designed inputs, what is said "
       "of\n"
-      "pairs of modes and of empty tubes (their experiments are not re-checked). No plugin is "
-      "loaded.\n"
+      "pairs of modes and of empty tubes (their experiments are not re-checked); of banks by sets, "
+      "that modes are excluded\n"
+      "and where the state is. No plugin is loaded.\n"
       "Exit code 4 and the first violation if a claim is false, or the first question on which "
       "cddlib does not agree; 5 if\n"
       "a check could not be decided, or nothing was checked.");
