@@ -8,7 +8,7 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/set_questions.hpp"
-#include "designers/facets/watch.hpp"
+#include "designers/watch.hpp"
 
 namespace cordon::designers {
 

@@ -296,7 +296,7 @@ TEST_CASE("The first input separates, within the input set and not much beyond w
   for (const double epsilon : {0.0, 1e-4, .3}) {
     const SeparationProblem problem = published_problem(3, epsilon);
     NodeProgram program(problem);
-    const FirstInput found = first_input(problem, program, [] { return false; });
+    const KnownAnswer found = first_input(problem, program, [] { return false; });
     REQUIRE(found.u);
     CHECK(found.cost == problem.cost.at(*found.u));
     CHECK(found.bound <= found.cost);
@@ -314,7 +314,7 @@ TEST_CASE("The first input separates, within the input set and not much beyond w
       {pair_of(0, 1, Matrix::Ones(1, 1), Vector::Zero(1), Matrix(Vector::Unit(6, 4).transpose()))},
       boxed_inputs(6, 4), Cost::Kind::norm_1, 0);
   NodeProgram program(single);
-  const FirstInput found = first_input(single, program, [] { return false; });
+  const KnownAnswer found = first_input(single, program, [] { return false; });
   REQUIRE(found.u);
   CHECK(found.cost < 1.1);
   CHECK(found.cost > 1);

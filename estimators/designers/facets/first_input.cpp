@@ -45,11 +45,10 @@ class Trial {
 
   /// Takes the input if it is cheaper and separates.
   bool offer(const Vector& zeta) {
-    Vector u = problem_.U.c + linalg::product(problem_.U.G, zeta);
+    const Vector u = problem_.U.c + linalg::product(problem_.U.G, zeta);
     const double cost = problem_.cost.at(u);
     if ((found_.u && cost >= found_.cost) || !separates(u)) return false;
-    found_.u = std::move(u);
-    found_.cost = cost;
+    found_.offer(u, cost);
     return true;
   }
 
@@ -58,7 +57,7 @@ class Trial {
            problem_.cost.at(problem_.U.c + linalg::product(problem_.U.G, zeta)) < found_.cost;
   }
 
-  FirstInput& found() { return found_; }
+  KnownAnswer& found() { return found_; }
 
  private:
   /// The pair that fails is asked first the next time.
@@ -76,13 +75,13 @@ class Trial {
   const SeparationProblem& problem_;
   const std::function<bool()>& over_;
   std::vector<const PairProgram*> pairs_;
-  FirstInput found_;
+  KnownAnswer found_;
 };
 
 }  // namespace
 
-FirstInput first_input(const SeparationProblem& problem, NodeProgram& program,
-                       const std::function<bool()>& over) {
+KnownAnswer first_input(const SeparationProblem& problem, NodeProgram& program,
+                        const std::function<bool()>& over) {
   Trial trial(problem, over);
   if (over()) return {};
   const NodeProgram::Answer cheapest = program.solve({});

@@ -6,20 +6,15 @@
 #include <functional>
 
 #include "designers/facets/node_program.hpp"
+#include "designers/known_answer.hpp"
 
 namespace cordon::designers {
-
-struct FirstInput {
-  std::optional<Vector> u;  ///< proven to separate every pair with κ ≥ ε
-  double cost = 0;
-  double bound = 0;  ///< proven: no input of U that leaves no tube empty costs less
-};
 
 /// Along the ways from the cheapest input of all to the ends of U in a few directions (an input all
 /// the time, alternating, at one time only, and some by chance), the nearest that separates, by
 /// halving: κ is convex, so that whatever lies behind an input that separates a pair does so too,
 /// if the cheapest does not.
-FirstInput first_input(const SeparationProblem& problem, NodeProgram& program,
-                       const std::function<bool()>& over);
+KnownAnswer first_input(const SeparationProblem& problem, NodeProgram& program,
+                        const std::function<bool()>& over);
 
 }  // namespace cordon::designers

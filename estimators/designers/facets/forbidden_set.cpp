@@ -20,40 +20,12 @@ namespace {
 
 constexpr double rank_tolerance =
     row_noise;  ///< of the terms: what inputs move less cannot be told from rounding
-constexpr double flat_tolerance = 1e-9;  ///< of the terms
-constexpr double flat_distance = 1e-6;   ///< of the terms, see forbidden_set
-constexpr double outer_rounding =
-    1e-14;  ///< of the terms: γ_n of the sums below, with room for thousands of them
-constexpr double inner_rounding = row_noise;  ///< of the terms, see forbidden_set
+constexpr double flat_tolerance = 1e-9;       ///< of the terms
+constexpr double flat_distance = 1e-6;        ///< of the terms, see forbidden_set
 constexpr double point_accuracy = 1e-13;      ///< of the terms
 constexpr double residual_tolerance = 1e-11;  ///< of the terms
 /// Of the terms: by how much rows are moved to see whether Q has a point all the same.
 constexpr double most_room = 0.5, least_room = 1e-13;
-
-/// The rows of a pair by powers of two at the size of their terms, so that 1 is the size of
-/// everything, in the factors ζ of U.
-struct ScaledPair {
-  Matrix G, N;  ///< G ξ + c = N ζ
-  Vector c;
-  Vector terms;   ///< per row, for ‖ξ‖∞ ≤ 1 + ε and ‖ζ‖∞ ≤ 1
-  double factor;  ///< 1 + ε
-
-  ScaledPair(const PairProgram& pair, const InputSequences& U, double epsilon)
-      : factor(1 + epsilon) {
-    G = pair.G;
-    N = product(pair.N, U.G);
-    const Vector shift = product(pair.N, U.c);
-    c = pair.c - shift;
-    terms = factor * pair.terms(U.c.cwiseAbs() + U.G.cwiseAbs().rowwise().sum());
-    for (Index i = 0; i < c.size(); ++i) {
-      const double scale = terms[i] > 0 ? std::exp2(-std::ilogb(terms[i])) : 1.0;
-      G.row(i) *= scale;
-      N.row(i) *= scale;
-      c[i] *= scale;
-      terms[i] *= scale;
-    }
-  }
-};
 
 /// What is small beside its terms is computed with more digits.
 using Long = long double;
@@ -166,24 +138,6 @@ class Support {
   Vector room_, moved_;  ///< per row
   double lambda_ = 0;    ///< the largest of all points
 };
-
-/// The half-space of ζ that multipliers y on the scaled rows prove.
-SeparatingFacet facet_of(const ScaledPair& pair, const Vector& y, double distance, double below) {
-  SeparatingFacet facet;
-  const double terms = y.cwiseAbs().dot(pair.terms);
-  facet.a = transposed_product(pair.N, y);
-  facet.out = pair.factor * transposed_product(pair.G, y).cwiseAbs().sum() + y.dot(pair.c) +
-              outer_rounding * terms;
-  facet.in = facet.out - below - inner_rounding * terms;
-  facet.out += distance * terms;
-  const double scale = facet.a.size() ? facet.a.cwiseAbs().maxCoeff() : 0;
-  if (scale > 0) {
-    facet.a /= scale;
-    facet.out /= scale;
-    facet.in /= scale;
-  }
-  return facet;
-}
 
 /// Points of Q in general position, and the directions in which it has no width.
 struct Span {

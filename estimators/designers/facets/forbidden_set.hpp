@@ -3,18 +3,10 @@
 // of inputs that matter.
 #pragma once
 
-#include "designers/facets/watch.hpp"
-#include "designers/separation_problem.hpp"
+#include "designers/facets/scaled_pair.hpp"
+#include "designers/watch.hpp"
 
 namespace cordon::designers {
-
-/// A half-space of the factors ζ, ‖ζ‖∞ ≤ 1, of the input sequences U = {c + Gζ}. Largest |a_i|
-/// is 1.
-struct SeparatingFacet {
-  Vector a;
-  double out = 0;  ///< a·ζ ≥ out: κ ≥ ε by one Farkas vector of the pair, rounding included
-  double in = 0;   ///< where a·ζ < in for every facet of the set, κ < ε
-};
 
 struct ForbiddenSet {
   enum class Kind {

@@ -7,26 +7,10 @@
 #include <vector>
 
 #include "cordon/solvers/lp.hpp"
+#include "designers/bounded_program.hpp"
 #include "designers/facets/forbidden_set.hpp"
 
 namespace cordon::designers {
-
-/// Variables with bounds on both sides, min costᵀx subject to A x = b.
-struct BoundedProgram {
-  Matrix A;
-  Vector b, error;  ///< |the row as meant - the row as stored| within the bounds, per row
-  Vector lower, upper, cost;
-
-  Index add_column(double from, double to, double price);
-  /// rowᵀx = right; columns that are added later do not enter.
-  Index add_row(const Vector& row, double right, double error);
-  /// rowᵀx - s = right, 0 ≤ s ≤ most.
-  void add_row_above(Vector row, double right, double error, double most);
-};
-
-/// Whatever y is: min costᵀx ≥ bᵀy + Σ_j min{(cost - Aᵀy)_j x_j : lower_j ≤ x_j ≤ upper_j} -
-/// |y|ᵀerror, rounded down [Neumaier2004].
-double proven_minimum(const BoundedProgram& program, VectorIn y);
 
 /// min cost(c + Gζ) subject to ζ in U, no tube empty, and a·ζ ≥ out for the chosen facets. Every
 /// bound is one for a·ζ ≥ in. Solutions keep a little inside of what leaves a tube non-empty, so

@@ -22,8 +22,6 @@ constexpr double met_tolerance = 1e-9;  ///< by which a solver's point may miss 
                                         ///< factors of inputs are of size 1
 constexpr int most_refinements = 60;    ///< of a node; each divides the error of the tangents by 4
 constexpr double share_of_first_input = .05;  ///< of the time limit
-constexpr double coarse_gap =
-    .02;  ///< relative error of the tangents up to which a node is branched on
 constexpr const char* more_facets =
     "a larger max_facets, a shorter horizon, or the designer \"milp\"";
 constexpr const char* more_room = "a larger input set, a longer horizon, or a smaller epsilon";
@@ -59,18 +57,17 @@ bool is_beyond(const SeparatingFacet& facet, const Vector& zeta, double toleranc
 
 class FacetSearch {
  public:
-  FacetSearch(const SeparationProblem& problem, const FacetLimits& limits, DesignControl& control)
+  FacetSearch(const SeparationProblem& problem, const FacetLimits& limits, DesignControl& control,
+              const KnownAnswer& known)
       : problem_(problem),
         limits_(limits),
-        control_(control),
         watch_(control, problem.horizon, limits.time_limit),
         program_(problem),
-        dual_(problem) {}
+        dual_(problem),
+        known_(known) {}
 
   SearchResult run() {
-    const Watch early(control_, problem_.horizon, share_of_first_input * limits_.time_limit);
-    first_ = first_input(problem_, program_, [&] { return early.over(); });
-    watch_.progress(best_cost(), first_.bound);
+    watch_.progress(best_cost(), known_.bound);
     if (find_facets()) branch_and_bound();
     result_.programs += program_.programs();
     return std::move(result_);
@@ -90,23 +87,23 @@ class FacetSearch {
   std::optional<Children> violated(const Node& node) const;
   double lower_bound() const;
   bool good_enough(double bound) const {
-    return result_.u && bound >= result_.cost - limits_.gap * result_.cost;
+    const double best = best_cost();
+    return best < infinity && std::max(bound, known_.bound) >= best - limits_.gap * best;
   }
   double best_cost() const;
   bool separates_left_out(const Vector& u) const;
   void conclude();
   void conclude_without_input();
   bool is_hopeless(const OpenPair& open);
-  std::string with_margin() const;
+  std::string with_margin() const;  ///< what every input is searched to reach
 
   const SeparationProblem& problem_;
   FacetLimits limits_;
-  DesignControl& control_;
   Watch watch_;
   NodeProgram program_;
   FacetDual dual_;
+  KnownAnswer known_;
   SearchResult result_;
-  FirstInput first_;
   std::vector<OpenPair> pairs_;
   std::vector<const PairProgram*> left_out_;  ///< pairs whose facets are not known
   std::string why_left_out_;                  ///< the first of them
@@ -125,12 +122,12 @@ bool FacetSearch::find_facets() {
     result_.facets += static_cast<std::int64_t>(set.facets.size());
     if (set.kind == ForbiddenSet::Kind::unknown && watch_.ended()) {
       result_.stopped = true;
-      close(first_.bound);
+      close(known_.bound);
       conclude();
       return false;
     }
     if (!keep_pair(pair, std::move(set))) return false;
-    watch_.progress(best_cost(), first_.bound);
+    watch_.progress(best_cost(), known_.bound);
   }
   return true;
 }
@@ -167,7 +164,7 @@ bool FacetSearch::keep_pair(const PairProgram& pair, ForbiddenSet set) {
 }
 
 double FacetSearch::best_cost() const {
-  return std::min(first_.u ? first_.cost : infinity, result_.u ? result_.cost : infinity);
+  return std::min(known_.cost, result_.u ? result_.cost : infinity);
 }
 
 bool FacetSearch::separates_left_out(const Vector& u) const {
@@ -206,7 +203,7 @@ double FacetSearch::lower_bound() const {
 }
 
 std::optional<Node> FacetSearch::take() {
-  if (next_ && (result_.u || (!left_out_.empty() && closed_ < infinity)))
+  if (next_ && (best_cost() < infinity || (!left_out_.empty() && closed_ < infinity)))
     keep(std::move(*std::exchange(next_, std::nullopt)));
   if (!next_ && open_.empty()) return std::nullopt;
   Node node = next_ ? std::move(*std::exchange(next_, std::nullopt))
@@ -232,7 +229,7 @@ Node FacetSearch::child(const Node& like, std::shared_ptr<const Children> childr
 void FacetSearch::visit(Node node) {
   if (!node.solved) {
     if (!evaluate(node)) return;
-    if (result_.u && !open_.empty() && node.bound > open_.begin()->first)
+    if (best_cost() < infinity && !open_.empty() && node.bound > open_.begin()->first)
       return keep(std::move(node));
   }
   ++result_.nodes;
@@ -287,7 +284,7 @@ void FacetSearch::branch(const Node& node, Children children) {
   next_ = child(node, std::make_shared<const Children>(std::move(children)), 0);
 }
 
-/// The bound and the input of a node; false if it is proven impossible or has to be put aside.
+/// The bound and the input of a node; false: proven impossible, or put aside.
 bool FacetSearch::evaluate(Node& node) {
   std::vector<const SeparatingFacet*> chosen;
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
@@ -312,31 +309,29 @@ bool FacetSearch::evaluate(Node& node) {
 
 void FacetSearch::conclude() {
   const bool complete = !result_.stopped && left_out_.empty() && (result_.u || closed_ == infinity);
-  if (!complete && first_.u && (!result_.u || first_.cost < result_.cost)) {
-    result_.u = first_.u;
-    result_.cost = first_.cost;
+  if (known_.u && (!result_.u || (!complete && known_.cost < result_.cost))) {
+    result_.u = known_.u;
+    result_.cost = known_.cost;
   }
   if (!result_.u) return conclude_without_input();
-  result_.lower_bound = std::min(lower_bound(), result_.cost);
+  result_.lower_bound = std::min(std::max(lower_bound(), known_.bound), result_.cost);
   if (good_enough(result_.lower_bound)) {
     result_.status = DesignStatus::optimal;
     result_.stopped = false;
     return;
   }
   result_.status = DesignStatus::feasible;
-  const bool flat =
-      std::any_of(pairs_.begin(), pairs_.end(), [](const OpenPair& open) { return open.set.flat; });
+  const auto is_flat = [](const OpenPair& open) { return open.set.flat; };
   if (result_.stopped) {
     result_.reason = "the search was stopped before the cheapest input was proven";
     result_.suggestion = "a larger time_limit or gap";
   } else if (!left_out_.empty()) {
     result_.reason = why_left_out_;
     result_.suggestion = more_facets;
-  } else if (flat) {
+  } else if (std::any_of(pairs_.begin(), pairs_.end(), is_flat)) {
     result_.reason =
         "the inputs that do not separate a pair form a set without width, from which a small "
-        "distance is kept: there is no "
-        "cheapest input, but cheaper ones the nearer they come";
+        "distance is kept: there is no cheapest input, but cheaper ones the nearer they come";
     result_.suggestion = "a larger gap";
   } else {
     result_.reason = "the facets are known up to rounding only, and so is the cheapest cost";
@@ -378,7 +373,6 @@ void FacetSearch::conclude_without_input() {
     result_.reason = "no input of the input set separates " + hopeless + with_margin();
 }
 
-/// What every input is searched to reach.
 std::string FacetSearch::with_margin() const {
   return problem_.epsilon > 0 ? fmt::format(" with κ ≥ {:.6g}", problem_.epsilon) : "";
 }
@@ -393,8 +387,14 @@ bool FacetSearch::is_hopeless(const OpenPair& open) {
 }  // namespace
 
 SearchResult search_facets(const SeparationProblem& problem, const FacetLimits& limits,
-                           DesignControl& control) {
-  return FacetSearch(problem, limits, control).run();
+                           DesignControl& control, const KnownAnswer* known) {
+  KnownAnswer first;
+  if (!known) {
+    const Watch early(control, problem.horizon, share_of_first_input * limits.time_limit);
+    NodeProgram program(problem);
+    first = first_input(problem, program, [&] { return early.over(); });
+  }
+  return FacetSearch(problem, limits, control, known ? *known : first).run();
 }
 
 }  // namespace cordon::designers

@@ -2,6 +2,7 @@
 // The facet designer: exact search over the facets of the sets of inputs that do not separate.
 #pragma once
 
+#include "designers/known_answer.hpp"
 #include "designers/separation_problem.hpp"
 
 namespace cordon::designers {
@@ -21,9 +22,10 @@ struct FacetLimits {
 /// nothing is optimal. What children cost at least follows from the multipliers of their parent,
 /// without a program, as far as possible; ties go to the pair with the fewest facets. All bounds
 /// are proven by multipliers. A pair whose facets are not known is left out: the rest bounds the
-/// cost, and an input that solves the rest is judged by the pair's own κ. What `first_input` found
-/// is the answer where the search did not come to its end.
+/// cost, and an input that solves the rest is judged by the pair's own κ. What was known before is
+/// the answer where the search finds nothing cheaper, or does not come to its end; `known` absent:
+/// `first_input` is asked.
 SearchResult search_facets(const SeparationProblem& problem, const FacetLimits& limits,
-                           DesignControl& control);
+                           DesignControl& control, const KnownAnswer* known = nullptr);
 
 }  // namespace cordon::designers

@@ -68,10 +68,11 @@ class BoxedProgram {
 /// empty), for every right-hand side within `error` of b.
 double farkas_margin(MatrixIn A, VectorIn b, VectorIn y, VectorIn error = Vector(0));
 
-/// Proves that some ξ' near ξ satisfies Aξ' = b, ‖ξ'‖∞ ≤ 1. Returns an upper bound of ‖ξ' - ξ‖
-/// entrywise, or nothing. The correction is sought in the span of D Aᵀ, D = diag(1 - |ξ|); (A D Aᵀ)
-/// is verified to be regular by an approximate inverse R with ‖I - R A D Aᵀ‖∞ < 1. Fails for
-/// dependent rows. Holds for every right-hand side within `error` of b. O(m² g + m³).
+/// Proves that some ξ' near ξ satisfies Aξ' = b and returns an upper bound of |ξ' - ξ|, entry by
+/// entry, or nothing; that ‖ξ'‖∞ ≤ 1 follows where |ξ| plus this is at most 1. The correction is
+/// sought in the span of D Aᵀ, D = diag(1 - |ξ|); (A D Aᵀ) is verified to be regular by an
+/// approximate inverse R with ‖I - R A D Aᵀ‖∞ < 1. Fails for dependent rows. Holds for every
+/// right-hand side within `error` of b. O(m² g + m³).
 std::optional<Vector> repair_radius(MatrixIn A, VectorIn b, VectorIn xi,
                                     VectorIn error = Vector(0));
 

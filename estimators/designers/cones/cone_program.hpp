@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The linear program of a cone of inputs: what they cost at least.
+#pragma once
+
+#include <vector>
+
+#include "designers/bounded_program.hpp"
+#include "designers/cones/star.hpp"
+
+namespace cordon::designers {
+
+/// A direction v from the centre of a star, to the end of its box.
+struct Ray {
+  Vector v;
+  Vector inverse;  ///< per pair: z + v/inverse does not separate it, proven; and room for what v
+                   ///< has been rounded by
+  int generation = 0;  ///< rays that it is a sum of were there before
+};
+
+/// min cost(z + v) over v = Σ λ_j v_j, λ ≥ 0, in the box, with Σ λ_j inverse_qj ≥ 1 for every pair
+/// q: no input in a cone of such rays, all in one orthant, that separates the pairs costs less,
+/// since the simplex under that plane lies in the convex set of those that do not. Rays of several
+/// orthants together bound the cones of each: |v| = Σ λ_j |v_j| is what costs, and Σ λ_j v_j⁺/up +
+/// λ_j v_j⁻/down ≤ 1 per entry. A quadratic cost is met by tangents.
+class ConeProgram {
+ public:
+  ConeProgram(const Star& star, Cost::Kind kind, Index pairs);
+
+  struct Answer {
+    bool solved = false;
+    double bound = 0;         ///< proven
+    bool impossible = false;  ///< proven: no input of the box is in these cones and separates
+    Vector lambda;
+  };
+  /// Tangents are added as long as they may still raise the bound to `goal`, or raise it much.
+  Answer solve(const std::vector<const Ray*>& rays, double goal) const;
+
+ private:
+  BoundedProgram program(const std::vector<const Ray*>& rays) const;
+  void add_cost(BoundedProgram& program, const Matrix& sizes) const;
+  void touch(BoundedProgram& program, const Matrix& sizes, Index i, double at) const;
+
+  const Star& star_;
+  Cost::Kind kind_;
+  Index pairs_;
+};
+
+}  // namespace cordon::designers
