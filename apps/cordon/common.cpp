@@ -250,7 +250,8 @@ std::string range_text(const ParamSpec& spec) {
   const bool whole = spec.kind == ParamKind::integer;
   const double widest = whole ? 0x1p63 : INFINITY;  // an integer's own limits are no range
   const bool below = std::abs(spec.lowest) < widest, above = std::abs(spec.highest) < widest;
-  if (below && above) return fmt::format("[{}, {}]", spec.lowest, spec.highest);
+  const char* most = spec.at_most.empty() ? "" : ", or {\"at_most\": …}";
+  if (below && above) return fmt::format("[{}, {}]{}", spec.lowest, spec.highest, most);
   if (below) return fmt::format("≥ {}", spec.lowest);
   return above ? fmt::format("≤ {}", spec.highest) : "";
 }

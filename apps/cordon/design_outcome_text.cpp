@@ -185,8 +185,9 @@ std::string horizon_text(const DesignOutcome& outcome) {
                   outcome.last_output_only ? "inputs, and the last output," : "inputs and outputs",
                   outcome.horizon);
   for (const HorizonTrial& trial : outcome.tried) {
-    text += fmt::format("  tried before: N = {}, {}{}{}\n", trial.horizon, to_string(trial.status),
-                        trial.reason.empty() ? "" : ": ", trial.reason);
+    text += fmt::format("  tried {}: N = {}, {}{}{}\n",
+                        trial.horizon < outcome.horizon ? "before" : "as well", trial.horizon,
+                        to_string(trial.status), trial.reason.empty() ? "" : ": ", trial.reason);
   }
   return text;
 }

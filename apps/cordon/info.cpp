@@ -39,6 +39,7 @@ Json as_json(const ParamSpec& spec) {
   if (spec.kind == ParamKind::choice) json["choices"] = spec.choices;
   if (spec.kind == ParamKind::component) json["kind"] = spec.component_kind;
   if (!spec.matrix_type.empty()) json["matrix_type"] = spec.matrix_type;
+  if (!spec.at_most.empty()) json["at_most"] = spec.at_most;
   return json;
 }
 

@@ -158,9 +158,9 @@ void check_size(const DesignerContext& context, const Params& params,
                      static_cast<double>(m.X0.generators() + m.X0.lines()));
   }
   if (4 * rows * std::max(rows, columns) <= most_entries) return;
-  const char* name = params.has("horizon")       ? "/horizon"
-                     : params.has("max_horizon") ? "/max_horizon"
-                                                 : "/input";
+  const char* name = params.has("horizon") || params.has("horizon_at_most") ? "/horizon"
+                     : params.has("max_horizon")                            ? "/max_horizon"
+                                                                            : "/input";
   problems.push_back(
       {name,
        fmt::format("makes programs of up to {:.0f} rows and {:.0f} columns", 2 * rows, 2 * columns),
@@ -225,8 +225,13 @@ ParamSchema& add_statement_parameters(ParamSchema& schema) {
 ParamSchema& add_search_parameters(ParamSchema& schema) {
   return schema
       .integer("horizon",
-               "N: inputs u_0 … u_N, outputs y_0 … y_N (absent: the smallest that works, up to "
-               "\"max_horizon\")",
+               "N: inputs u_0 … u_N, outputs y_0 … y_N; {\"at_most\": N}: the cheapest input of "
+               "all horizons up to N (absent: the smallest that works, up to \"max_horizon\")",
+               std::nullopt, 1, most_horizon)
+      .or_at_most("horizon_at_most")
+      .integer("horizon_at_most",
+               "N of \"horizon\": {\"at_most\": N}: all horizons 1, …, N are searched, and the "
+               "cheapest input is taken, of equal ones the shortest",
                std::nullopt, 1, most_horizon)
       .integer("max_horizon", "largest horizon that is tried if none is given", 6, 1, most_horizon)
       .set("input_set",
@@ -284,6 +289,10 @@ void check_cost(const Params& params, Index inputs, VectorIn u, std::vector<Diag
 std::vector<Diagnostic> check_search(const DesignerContext& context, const Params& params) {
   std::vector<Diagnostic> problems = check_statement(context, params);
   const Index inputs = inputs_of(context.bank);
+  if (params.has("horizon") && params.has("horizon_at_most")) {
+    problems.push_back({"/horizon_at_most", "stands beside a fixed \"horizon\"",
+                        "give one of them: N, or {\"at_most\": N}"});
+  }
   if (params.has("first_input") && params.vector("first_input").size() != inputs) {
     problems.push_back({"/first_input",
                         fmt::format("has {} entries, the number of inputs is {}",
@@ -344,6 +353,7 @@ InputSequences inputs_from(const ModeBank& bank, const Params& params, Index hor
 
 Horizons horizons_from(const Params& params) {
   if (params.has("horizon")) return {params.integer("horizon"), params.integer("horizon")};
+  if (params.has("horizon_at_most")) return {1, params.integer("horizon_at_most"), true};
   if (params.has("max_horizon")) return {1, params.integer("max_horizon")};
   return {params.matrix("input").rows() - 1,
           params.matrix("input").rows() - 1};  // of an input that is given

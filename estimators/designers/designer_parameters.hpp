@@ -37,9 +37,11 @@ InputSequences inputs_from(const ModeBank& bank, const Params& params, Index hor
 /// The set that every input is taken from, lines eliminated: the parameter, or /system/U.
 LineForm input_set_from(const ModeBank& bank, const Params& params);
 
-/// The horizons to try: the one that is given, or 1, 2, … up to "max_horizon".
+/// The horizons to try: the one that is given, or 1, 2, … up to "max_horizon"; up to
+/// "horizon_at_most", the cheapest of all.
 struct Horizons {
   Index first = 1, last = 1;
+  bool cheapest = false;
 };
 Horizons horizons_from(const Params& params);
 

@@ -36,6 +36,7 @@ struct SeparationProblem {
   Cost cost;
   double epsilon = 0;
   std::vector<std::string> modes = {};  ///< their names, for reasons
+  std::optional<Vector> start = {};     ///< an input of U that leaves no tube empty, to begin with
 };
 /// The modes of a pair, for people: by their names, or by numbers from 1 where these are not given.
 std::string modes_of(const SeparationProblem& problem, const PairProgram& pair);

@@ -2,6 +2,7 @@
 #include "designers/tube_designer.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double touching = 1e-7;    ///< |κ| below this
 constexpr double least_time = 1e-3;  ///< seconds that a search is given
+constexpr double same_cost = 1e-7;   ///< costs of two horizons that differ by this share are equal
 
 Answer is_empty_under(const TubeConditions& rows, VectorIn u) {
   const Answer if_met = rows.vanished == 0 ? Answer::no : Answer::unknown;
@@ -169,49 +171,122 @@ bool is_answer(const ModeBank& bank, const Params& params, double epsilon, Desig
   return false;
 }
 
+/// What is told of a horizon that is not the one reported.
+HorizonTrial trial_of(const DesignOutcome& outcome) {
+  HorizonTrial trial{outcome.horizon, outcome.status, outcome.reason};
+  if (!outcome.best) return trial;
+  trial.reason = fmt::format("cost {:.6g}", outcome.best->cost);
+  if (outcome.status == DesignStatus::feasible && std::isfinite(outcome.lower_bound))
+    trial.reason += fmt::format(", lower bound {:.6g}", outcome.lower_bound);
+  return trial;
+}
+
 }  // namespace
 
-DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
-  DesignOutcome outcome;
-  outcome.epsilon = params_.real("epsilon");
-  const Horizons horizons = horizons_from(params_);
-  outcome.last_output_only = span_from(params_, horizons.last).last_output_only;
-  outcome.admissible_set = span_from(params_, horizons.last).admissible_set;
-  for (Index horizon = horizons.first; horizon <= horizons.last; ++horizon) {
-    outcome.horizon = horizon;
-    const Watch watch(control, horizon, params_.real("time_limit"));
-    std::optional<SeparationProblem> problem =
-        problem_at(bank(), backend(), params_, horizon, [&] { return watch.over(); });
-    if (!problem || watch.over()) {
-      return without_answer(std::move(outcome),
-                            "the end came while the equations of the tubes were still being solved",
-                            "a larger time_limit, a shorter horizon, or fewer modes");
-    }
-    problem->U = inputs_from(bank(), params_, horizon);
-    SearchResult found = search(*problem, std::max(watch.left(), least_time), control);
-    outcome.status = found.status;
-    outcome.lower_bound = found.lower_bound;
-    outcome.restriction = std::move(found.restriction);
-    outcome.stopped = found.stopped;
-    outcome.reason = std::move(found.reason);
-    outcome.suggestion = std::move(found.suggestion);
-    outcome.nodes = found.nodes;
-    outcome.programs = found.programs;
-    outcome.facets = found.facets;
-    if (found.u) {
-      // However late it is: an input that was found is proven.
-      outcome.best =
-          judge(bank(), backend(), params_, *problem,
-                inside_bounds(problem->U, std::move(*found.u)), [&] { return control.stop(); });
-      if (!outcome.best)
-        return without_answer(std::move(outcome),
-                              "the search was stopped before the input was judged");
-      if (is_answer(bank(), params_, problem->epsilon, outcome)) return outcome;
-    }
-    if (horizon == horizons.last || control.stop()) return outcome;
-    outcome.tried.push_back({horizon, outcome.status, outcome.reason});
+std::optional<Vector> TubeDesigner::prolonged(const Matrix& u,
+                                              const SeparationProblem& problem) const {
+  const LineForm U = input_set_from(bank(), params_);
+  Vector start = problem.cost.reference;
+  start.head(u.size()) = Matrix(u.transpose()).reshaped();
+  for (Index k = u.rows(); k <= problem.horizon; ++k) {
+    auto next = start.segment(k * u.cols(), u.cols());
+    if (contains(U, next) != Answer::yes) next = u.row(u.rows() - 1).transpose();
   }
-  return outcome;
+  const bool shows = std::all_of(
+      problem.conditions.begin(), problem.conditions.end(),
+      [&](const TubeConditions& rows) { return is_empty_under(rows, start) == Answer::no; });
+  return shows ? std::optional<Vector>(start) : std::nullopt;
+}
+
+TubeDesigner::OneHorizon TubeDesigner::design_at(Index horizon, const DesignOutcome* shorter,
+                                                 DesignControl& control) const {
+  DesignOutcome outcome;
+  outcome.horizon = horizon;
+  outcome.epsilon = params_.real("epsilon");
+  outcome.last_output_only = span_from(params_, horizon).last_output_only;
+  outcome.admissible_set = span_from(params_, horizon).admissible_set;
+  const Watch watch(control, horizon, params_.real("time_limit"));
+  std::optional<SeparationProblem> problem =
+      problem_at(bank(), backend(), params_, horizon, [&] { return watch.over(); });
+  if (!problem || watch.over()) {
+    return {without_answer(std::move(outcome),
+                           "the end came while the equations of the tubes were still being solved",
+                           "a larger time_limit, a shorter horizon, or fewer modes"),
+            true};
+  }
+  problem->U = inputs_from(bank(), params_, horizon);
+  if (shorter && shorter->best) problem->start = prolonged(shorter->best->u, *problem);
+  SearchResult found = search(*problem, std::max(watch.left(), least_time), control);
+  outcome.status = found.status;
+  outcome.lower_bound = found.lower_bound;
+  outcome.restriction = std::move(found.restriction);
+  outcome.stopped = found.stopped;
+  outcome.reason = std::move(found.reason);
+  outcome.suggestion = std::move(found.suggestion);
+  outcome.nodes = found.nodes;
+  outcome.programs = found.programs;
+  outcome.facets = found.facets;
+  if (!found.u) return {std::move(outcome), false};
+  // However late it is: an input that was found is proven.
+  outcome.best =
+      judge(bank(), backend(), params_, *problem, inside_bounds(problem->U, std::move(*found.u)),
+            [&] { return control.stop(); });
+  if (!outcome.best)
+    return {
+        without_answer(std::move(outcome), "the search was stopped before the input was judged"),
+        true};
+  const bool is_one = is_answer(bank(), params_, problem->epsilon, outcome);
+  return {std::move(outcome), is_one};
+}
+
+DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
+  const Horizons horizons = horizons_from(params_);
+  if (horizons.cheapest) return cheapest_of(horizons, control);
+  std::vector<HorizonTrial> tried;
+  for (Index horizon = horizons.first;; ++horizon) {
+    auto [outcome, ended] = design_at(horizon, nullptr, control);
+    if (ended || horizon == horizons.last || control.stop()) {
+      outcome.tried = std::move(tried);
+      return std::move(outcome);
+    }
+    tried.push_back({horizon, outcome.status, outcome.reason});
+  }
+}
+
+DesignOutcome TubeDesigner::cheapest_of(const Horizons& horizons, DesignControl& control) const {
+  std::vector<DesignOutcome> all;
+  std::size_t chosen = 0, open = 0;  // open: whose lower bound is the least
+  for (Index horizon = horizons.first; horizon <= horizons.last; ++horizon) {
+    const DesignOutcome* known = all.empty() || !all[chosen].best ? nullptr : &all[chosen];
+    auto [outcome, ended] = design_at(horizon, known, control);
+    const bool cheaper =
+        outcome.best && (!known || outcome.best->cost < known->best->cost * (1 - same_cost));
+    all.push_back(std::move(outcome));
+    if (cheaper || !known) chosen = all.size() - 1;
+    if (all.back().status == DesignStatus::infeasible) all.back().lower_bound = infinity;
+    if (all.back().lower_bound < all[open].lower_bound) open = all.size() - 1;
+    if (control.stop() || (ended && !all.back().best)) break;
+  }
+  DesignOutcome result = all[chosen];
+  result.nodes = result.programs = result.facets = 0;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    result.nodes += all[k].nodes;
+    result.programs += all[k].programs;
+    result.facets += all[k].facets;
+    if (k != chosen) result.tried.push_back(trial_of(all[k]));
+  }
+  if (!result.best) return result;
+  const bool complete = static_cast<Index>(all.size()) == horizons.last;
+  const double bound = complete ? all[open].lower_bound : -infinity, cost = result.best->cost;
+  result.lower_bound = std::min(bound, result.lower_bound);
+  if (result.status == DesignStatus::optimal && result.lower_bound < cost * (1 - same_cost)) {
+    result.status = DesignStatus::feasible;
+    result.stopped = result.stopped || !complete || all[open].stopped;
+    result.reason = complete ? fmt::format("an input of N = {} may cost less", all[open].horizon)
+                             : "longer horizons were not searched";
+    result.suggestion = "a larger time_limit";
+  }
+  return result;
 }
 
 }  // namespace cordon::designers

@@ -31,7 +31,7 @@ DesignOutcome without_answer(DesignOutcome outcome, std::string reason,
 std::string open_question(const ModeBank& bank, const InputDesign& design, double epsilon);
 
 /// Solves the problem of one horizon after another by `search` until one has an answer other than
-/// "infeasible".
+/// "infeasible"; or of all of them, for the cheapest.
 class TubeDesigner : public InputDesigner {
  public:
   TubeDesigner(const DesignerContext& context, Params params)
@@ -45,6 +45,16 @@ class TubeDesigner : public InputDesigner {
   virtual SearchResult search(const SeparationProblem& problem, double seconds,
                               DesignControl& control) const = 0;
   DesignOutcome do_design(DesignControl& control) const override;
+  DesignOutcome cheapest_of(const Horizons& horizons, DesignControl& control) const;
+  struct OneHorizon {
+    DesignOutcome outcome;
+    bool ended = false;  ///< an input was found, or the end came before the search was over
+  };
+  /// `shorter` (may be null): an outcome whose input, prolonged, is known.
+  OneHorizon design_at(Index horizon, const DesignOutcome* shorter, DesignControl& control) const;
+  /// By the reference where the input set has it, else by the last input; nothing if a tube may be
+  /// empty then.
+  std::optional<Vector> prolonged(const Matrix& u, const SeparationProblem& problem) const;
 
   Params params_;
 };

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "input_design/motor.hpp"
 #include "input_design/plugins.hpp"
 #include "input_design/systems.hpp"
 
@@ -142,4 +143,49 @@ TEST_CASE("Parameters of the search reach it") {
                                       Params(params).set("outputs", std::string("last")));
   CHECK(last.last_output_only);
   CHECK((!last.best || last.best->cost > 9.2005));
+}
+
+TEST_CASE("Of all horizons the cheapest, with the others told") {
+  const auto up_to = [](std::int64_t horizon) { return Params().set("horizon_at_most", horizon); };
+  const DesignOutcome six = designed(examples::motor_models(), up_to(6).set("epsilon", .001));
+  CHECK(six.status == DesignStatus::optimal);
+  CHECK(six.horizon == 6);
+  REQUIRE(six.best);
+  CHECK(six.best->cost == doctest::Approx(17.336914).epsilon(1e-6));
+  CHECK(six.lower_bound >= six.best->cost * (1 - 1e-7));
+  REQUIRE(six.tried.size() == 5);
+  for (std::size_t k = 0; k < 5; ++k) CHECK(six.tried[k].horizon == static_cast<Index>(k) + 1);
+  CHECK(six.tried[1].status == DesignStatus::infeasible);
+  CHECK(six.tried[4].status == DesignStatus::optimal);
+  CHECK(six.tried[4].reason == "cost 18.8461");
+
+  // Every further step away from the reference costs .5 more.
+  const DesignOutcome first =
+      designed(examples::three_scalar_models(), up_to(4).set("reference", Matrix{{2.5}}));
+  REQUIRE(first.best);
+  CHECK(first.status == DesignStatus::optimal);
+  const DesignOutcome alone =
+      designed(examples::three_scalar_models(),
+               Params()
+                   .set("reference", Matrix{{2.5}})
+                   .set("horizon", static_cast<std::int64_t>(first.horizon)));
+  CHECK(first.best->cost == doctest::Approx(alone.best->cost));
+  REQUIRE(first.tried.size() == 3);
+  CHECK(first.tried.back().horizon == 4);
+  for (const HorizonTrial& trial : first.tried) CHECK(trial.horizon != first.horizon);
+
+  // What does not get cheaper stays short.
+  const DesignOutcome same = designed(examples::three_scalar_models(), up_to(5));
+  const DesignOutcome some =
+      designed(examples::three_scalar_models(), Params().set("max_horizon", std::int64_t{5}));
+  REQUIRE(same.best);
+  REQUIRE(some.best);
+  CHECK(same.best->cost <= some.best->cost * (1 + 1e-9));
+  CHECK((same.horizon == some.horizon || same.best->cost < some.best->cost * (1 - 1e-7)));
+
+  const auto both =
+      registry().check<DesignerEntry>("facets", {examples::motor_models(), backend("zonotope")},
+                                      up_to(3).set("horizon", std::int64_t{3}));
+  REQUIRE(both.size() == 1);
+  CHECK(both[0].pointer == "/horizon_at_most");
 }

@@ -6,7 +6,7 @@
 
 namespace cordon::examples {
 
-/// Current and speed, sampled every 50 ms; the speed is measured.
+/// Current and speed; the speed is measured.
 inline ModeBank motor_models() {
   Model model;
   model.linear = {{},

@@ -171,6 +171,8 @@ TEST_CASE("a schema that contradicts itself is refused where it is written") {
   CHECK(refused([](ParamSchema& s) { s.flag("", "x", true); }));
   CHECK(refused([](ParamSchema& s) { s.flag("a", "x", true).required(); }));
   CHECK(refused([](ParamSchema& s) { s.required(); }));
+  CHECK(refused([](ParamSchema& s) { s.or_at_most("b"); }));
+  CHECK(refused([](ParamSchema& s) { s.real("a", "x", 0, 0, 1).or_at_most("b"); }));
 }
 
 TEST_CASE("asking for an absent name or another type throws") {

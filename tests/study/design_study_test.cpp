@@ -41,6 +41,21 @@ TEST_CASE("pipelines with designers are read with every default") {
   CHECK(simulate.input.empty());
 }
 
+TEST_CASE("a horizon may be written as the largest one") {
+  const std::string fixed = "\"horizon\": 4", most = "\"horizon\": {\"at_most\": 7}";
+  const Study study = read_text(exchanged(design_study, fixed, most));
+  CHECK(study.pipelines[0].design()->designer.params.integer("longest") == 7);
+  expect_round_trip(study);
+  expect_reported(design_study,
+                  {fixed, "\"horizon\": {\"at_most\": 21}", "/pipelines/0/designer/horizon/at_most",
+                   "is too large", "must lie between 1 and 20"});
+  expect_reported(design_study, {fixed, "\"horizon\": {}", "/pipelines/0/designer/horizon",
+                                 "has no \"at_most\"", "write a number, or {\"at_most\": number}"});
+  expect_reported(design_study, {fixed, "\"horizon\": {\"at_most\": 7, \"least\": 2}",
+                                 "/pipelines/0/designer/horizon/least", "unknown bound",
+                                 "there is only \"at_most\""});
+}
+
 TEST_CASE("without data, designers have the defaults") {
   const Study study = read_text(exchanged(design_study, data_text, ""));
   const auto& simulate = std::get<SimulateSpec>(study.data);

@@ -222,6 +222,8 @@ void add_designers(Registrar& registrar) {
   };
   ParamSchema search;
   search.integer("horizon", "N", 3, 0, 1000)
+      .or_at_most("longest")
+      .integer("longest", "N at most", {}, 1, 20)
       .real("epsilon", "separation", 1e-4, 0, 1)
       .set("input_set", "of each time");
   search.matrix("weights", "a row per time").choice("outputs", "which", {"all", "last"}, "all");

@@ -45,7 +45,9 @@ class Trial {
 
   /// Takes the input if it is cheaper and separates.
   bool offer(const Vector& zeta) {
-    const Vector u = problem_.U.c + linalg::product(problem_.U.G, zeta);
+    return offer_input(problem_.U.c + linalg::product(problem_.U.G, zeta));
+  }
+  bool offer_input(const Vector& u) {
     const double cost = problem_.cost.at(u);
     if ((found_.u && cost >= found_.cost) || !separates(u)) return false;
     found_.offer(u, cost);
@@ -84,6 +86,7 @@ KnownAnswer first_input(const SeparationProblem& problem, NodeProgram& program,
                         const std::function<bool()>& over) {
   Trial trial(problem, over);
   if (over()) return {};
+  if (problem.start) trial.offer_input(*problem.start);
   const NodeProgram::Answer cheapest = program.solve({});
   trial.found().bound = cheapest.bound;
   if (cheapest.zeta && !trial.offer(*cheapest.zeta)) {

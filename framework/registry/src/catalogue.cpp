@@ -52,6 +52,7 @@ std::vector<std::pair<std::string_view, const std::string*>> texts_of(const Comp
     for (const std::string& choice : spec.choices) texts.emplace_back("choice", &choice);
     texts.emplace_back("kind of a parameter", &spec.component_kind);
     texts.emplace_back("type of a parameter", &spec.matrix_type);
+    texts.emplace_back("name of a parameter", &spec.at_most);
   }
   return texts;
 }

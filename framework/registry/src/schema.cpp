@@ -328,6 +328,13 @@ ParamSchema& ParamSchema::or_matrix(std::string type) {
   return *this;
 }
 
+ParamSchema& ParamSchema::or_at_most(std::string parameter) {
+  if (specs_.empty() || specs_.back().kind != ParamKind::integer)
+    throw Error(Errc::invalid, "schema: or_at_most() stands behind something that is no integer");
+  specs_.back().at_most = std::move(parameter);
+  return *this;
+}
+
 ParamSchema& ParamSchema::required() {
   if (specs_.empty())
     throw Error(Errc::invalid, "schema: required() stands before the first parameter");

@@ -70,11 +70,13 @@ class Refutation {
 
   void compare_horizon() {
     const auto* horizon = asked<std::int64_t>("horizon");
-    const auto* most = asked<std::int64_t>("max_horizon");
+    const auto* any = asked<std::int64_t>("horizon_at_most");
+    const auto* most = any ? any : asked<std::int64_t>("max_horizon");
     if (horizon && outcome_.horizon != *horizon) {
       refute("it answers for the horizon {}, and \"horizon\" is {}", outcome_.horizon, *horizon);
     } else if (!horizon && most && outcome_.horizon > *most) {
-      refute("it answers for the horizon {}, and \"max_horizon\" is {}", outcome_.horizon, *most);
+      refute("it answers for the horizon {}, and \"{}\" is {}", outcome_.horizon,
+             any ? "horizon_at_most" : "max_horizon", *most);
     }
   }
 

@@ -55,6 +55,13 @@ Json parameter(const ParamSpec& spec) {
       break;
   }
   if (spec.kind == ParamKind::integer || spec.kind == ParamKind::real) add_limits(schema, spec);
+  if (!spec.at_most.empty()) {
+    Json most = {{"type", "object"},
+                 {"properties", {{"at_most", schema}}},
+                 {"required", {"at_most"}},
+                 {"additionalProperties", false}};
+    schema = {{"anyOf", {schema, most}}};
+  }
   if (spec.fallback) {
     if (const auto* value = std::get_if<std::int64_t>(&*spec.fallback)) schema["default"] = *value;
     if (const auto* value = std::get_if<double>(&*spec.fallback)) schema["default"] = *value;

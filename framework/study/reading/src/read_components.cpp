@@ -128,6 +128,17 @@ const Value& target(const Cursor& at, std::string& relative) {
   return *value;
 }
 
+/// {"at_most": n}
+std::optional<std::int64_t> read_at_most(const Cursor& at, const ParamSpec& most) {
+  at.expect_keys({"at_most"}, "bound", "");
+  const auto value = at.find("at_most");
+  if (!value) {
+    at.error("has no \"at_most\"", "write a number, or {\"at_most\": number}");
+    return std::nullopt;
+  }
+  return read_integer(*value, most.lowest, most.highest);
+}
+
 void read_params(const Cursor& at, const ParamSchema& schema, const std::string& component,
                  const ComponentContext& context, int depth, Params& params) {
   std::vector<std::string> names = schema.names();
@@ -137,6 +148,15 @@ void read_params(const Cursor& at, const ParamSchema& schema, const std::string&
   for (const ParamSpec& spec : schema.specs()) {
     const auto value_at = at.find(spec.name);
     if (!value_at || spec.name == "type") continue;
+    const ParamSpec* most = spec.at_most.empty() ? nullptr : schema.find(spec.at_most);
+    if (most && value_at->is(Kind::object)) {
+      if (auto value = read_at_most(*value_at, *most)) {
+        params.set(most->name, *value);
+      } else {
+        wrong.push_back(child("", spec.name));
+      }
+      continue;
+    }
     if (auto value = as_param(spec, *value_at, context, depth)) {
       params.set(spec.name, std::move(*value));
     } else {

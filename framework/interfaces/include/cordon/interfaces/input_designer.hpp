@@ -56,11 +56,11 @@ enum class DesignStatus {
 };
 std::string_view to_string(DesignStatus status) noexcept;
 
-/// A horizon that was tried before the one that is reported.
+/// A horizon that was tried beside the one that is reported.
 struct HorizonTrial {
   Index horizon = 0;
   DesignStatus status = DesignStatus::unknown;
-  std::string reason;
+  std::string reason;  ///< for people; empty where there is none
 };
 
 /// A narrower problem that was searched in place of the problem itself, and what is known of it.
@@ -84,7 +84,7 @@ struct DesignOutcome {
       nodes = 0,
       programs = 0,
       facets = 0;  ///< size of the search: nodes, linear programs solved, facets of forbidden sets
-  std::vector<HorizonTrial> tried = {};  ///< smaller horizons, in order
+  std::vector<HorizonTrial> tried = {};  ///< other horizons, in order
   double epsilon = 0;                    ///< κ ≥ ε was asked for
   // What was compared, for whoever proves it again:
   bool last_output_only = false;  ///< the outputs y_N, not those of all times

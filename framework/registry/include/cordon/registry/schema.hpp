@@ -82,6 +82,8 @@ struct ParamSpec {
   /// A component that may be written as a matrix: the component of this type with the matrix as the
   /// parameter "matrix".
   std::string matrix_type = {};
+  /// Of an integer that may be written as {"at_most": n}: the integer parameter that n is given to.
+  std::string at_most = {};
 };
 
 /// The parameters a component takes, in the order of the manual. A schema that contradicts itself
@@ -105,6 +107,9 @@ class ParamSchema {
   ParamSchema& component(std::string name, std::string doc, std::string kind);
   /// The last added component may be written as a matrix, which stands for {type, "matrix": …}.
   ParamSchema& or_matrix(std::string type);
+  /// The last added integer may be written as {"at_most": n}, which gives n to another integer
+  /// parameter in its place.
+  ParamSchema& or_at_most(std::string parameter);
   ParamSchema& required();  ///< makes the last added parameter required
 
   const std::vector<ParamSpec>& specs() const { return specs_; }

@@ -44,10 +44,10 @@ ExactSeparation verify_design(const ModeBank& bank, const DesignOutcome& outcome
 
 /// What of a designer's answer is proven false: by the exact separation of its input, and by what
 /// the study asks for in the parameters of these names, where the designer has them: `horizon`,
-/// `max_horizon`, `input`, `input_set` (absent: U of the nominal mode), `first_input`, `epsilon`,
-/// `outputs`, `admissible_set`. An input is outside the set, or another than the one that was asked
-/// for, if it is so by more than `tolerances::reported` (1e-9) of its size. One sentence each;
-/// none: nothing is contradicted.
+/// `horizon_at_most`, `max_horizon`, `input`, `input_set` (absent: U of the nominal mode),
+/// `first_input`, `epsilon`, `outputs`, `admissible_set`. An input is outside the set, or another
+/// than the one that was asked for, if it is so by more than `tolerances::reported` (1e-9) of its
+/// size. One sentence each; none: nothing is contradicted.
 std::vector<std::string> refuted_claims(const ModeBank& bank, const ComponentSpec& designer,
                                         const DesignOutcome& outcome, const ExactSeparation* exact);
 
