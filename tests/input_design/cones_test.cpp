@@ -2,6 +2,7 @@
 // The search over cones: closed forms, the other search on random problems, and designs with more
 // inputs than facets can be enumerated for.
 #include <algorithm>
+#include <tuple>
 
 #include <doctest/doctest.h>
 
@@ -168,6 +169,35 @@ TEST_CASE(
   CHECK(reached >= 60);
   CHECK(left_out <= 2);
   CHECK(open <= 4);  // quadratic costs
+}
+
+TEST_CASE("Inputs that begin at the reference, up to the rounding of their ends") {
+  std::mt19937 random(5);
+  for (const auto& [middle, radius, reference] :
+       {std::tuple(2.5, 2.5, 0.0), {.7, .3, .4}, {-.7, .6, -.1}, {1e3, .1, 999.9}}) {
+    std::vector<PairProgram> pairs;
+    for (Index j = 1; j <= 2; ++j) {
+      pairs.push_back(random_pair(random, 0, j, 5, 12, 4, 5));
+      pairs.back().G *= radius;
+      pairs.back().c = pairs.back().N * Vector::Constant(5, reference);
+    }
+    SeparationProblem problem = problem_of(pairs, boxed_inputs(5, radius), Cost::Kind::norm_1, .01);
+    problem.U.c.setConstant(middle);
+    problem.cost.reference.setConstant(reference);
+    const Star star(problem);
+    CHECK(std::min(star.up.maxCoeff(), star.down.maxCoeff()) == 0);
+    CHECK(star.neglected.maxCoeff() > 0);
+    CHECK(star.neglected.maxCoeff() < 1e-12 * (std::abs(middle) + radius));
+    const Known cones = known_by_cones(problem, 1e-7, 20000);
+    REQUIRE(cones.answer.u);
+    CHECK(cones.answer.bound >= cones.answer.cost * (1 - 1e-6));
+    CHECK(searched(problem).cost >= cones.answer.bound * (1 - 1e-9));
+    SeparationProblem narrow = problem;  // the cheapest input is at least as far as this
+    const double most = (*cones.answer.u - problem.cost.reference).cwiseAbs().sum() / 5 * .9;
+    narrow.U.G *= most / (2 * radius);
+    narrow.U.c.setConstant(reference + (middle > reference ? 1 : -1) * most / 2);
+    CHECK(known_by_cones(narrow, 1e-7, 20000).impossible);
+  }
 }
 
 TEST_CASE("Many inputs: no input that separates costs less than the bound") {

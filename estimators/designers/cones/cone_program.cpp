@@ -2,6 +2,7 @@
 #include "designers/cones/cone_program.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cordon/solvers/lp.hpp"
 
@@ -19,21 +20,21 @@ constexpr double closed_tangents = 1e-10,
 
 }  // namespace
 
-ConeProgram::ConeProgram(const Star& star, Cost::Kind kind, Index pairs)
-    : star_(star), kind_(kind), pairs_(pairs) {}
+ConeProgram::ConeProgram(const Star& star, Cost::Kind kind, Vector slack)
+    : star_(star), kind_(kind), slack_(std::move(slack)) {}
 
 BoundedProgram ConeProgram::program(const std::vector<const Ray*>& rays) const {
   const auto count = static_cast<Index>(rays.size());
   BoundedProgram program;
   program.A.resize(0, 0);
   for (Index j = 0; j < count; ++j) program.add_column(0, roomy(1), 0);
-  for (Index q = 0; q < pairs_; ++q) program.add_column(0, roomy(1), missing_price);
-  for (Index q = 0; q < pairs_; ++q) {
-    Vector row = Vector::Zero(count + pairs_);
+  for (Index q = 0; q < slack_.size(); ++q) program.add_column(0, roomy(1), missing_price);
+  for (Index q = 0; q < slack_.size(); ++q) {
+    Vector row = Vector::Zero(count + slack_.size());
     for (Index j = 0; j < count; ++j) row[j] = rays[static_cast<std::size_t>(j)]->inverse[q];
     const double most = row.sum() + 1;
     row[count + q] = 1;
-    program.add_row_above(row, 1, 0, most);
+    program.add_row_above(row, 1 - slack_[q], 0, most);
   }
   for (Index i = 0; i < star_.size(); ++i) {
     Vector row = Vector::Zero(count);
@@ -46,7 +47,7 @@ BoundedProgram ConeProgram::program(const std::vector<const Ray*>& rays) const {
   return program;
 }
 
-void ConeProgram::add_cost(BoundedProgram& program, const Matrix& sizes) const {
+void ConeProgram::add_cost(BoundedProgram& program, const Matrix& sizes, double goal) const {
   const Index count = sizes.cols();
   const double unit = star_.most;
   if (kind_ == Cost::Kind::norm_1) {
@@ -65,7 +66,11 @@ void ConeProgram::add_cost(BoundedProgram& program, const Matrix& sizes) const {
       program.add_column(0, roomy(1), star_.weights[i] * reach * reach / unit);
     }
     for (Index i = 0; i < star_.size(); ++i) {
-      for (const double at : {.25, .5, 1.0}) touch(program, sizes, i, at);
+      // at the sizes that matter to a cost up to the goal
+      const double reach = star_.apart[i] + std::max(star_.up[i], star_.down[i]);
+      const double weight = star_.weights[i] * reach * reach;
+      const double far = weight > goal ? std::sqrt(goal / weight) : 1;
+      for (const double share : {.25, .5, 1.0}) touch(program, sizes, i, share * far);
     }
   }
 }
@@ -76,16 +81,17 @@ void ConeProgram::touch(BoundedProgram& program, const Matrix& sizes, Index i, d
   if (!(reach > 0)) return;
   Vector row = Vector::Zero(program.lower.size());
   row.head(sizes.cols()) = -2 * at / reach * sizes.row(i).transpose();
-  row[sizes.cols() + 2 * pairs_ + star_.size() + i] = 1;
+  row[sizes.cols() + 2 * slack_.size() + star_.size() + i] = 1;
   program.add_row_above(row, 2 * at * star_.apart[i] / reach - at * at, 0, 4);
 }
 
-ConeProgram::Answer ConeProgram::solve(const std::vector<const Ray*>& rays, double goal) const {
+ConeProgram::Answer ConeProgram::solve(const std::vector<const Ray*>& rays, double goal,
+                                       bool exact) const {
   const auto count = static_cast<Index>(rays.size());
   Matrix sizes(star_.size(), count);
   for (Index j = 0; j < count; ++j) sizes.col(j) = rays[static_cast<std::size_t>(j)]->v.cwiseAbs();
   BoundedProgram program = this->program(rays);
-  add_cost(program, sizes);
+  add_cost(program, sizes, goal);
   double constant = star_.fixed;
   if (kind_ == Cost::Kind::norm_1) constant += star_.weights.dot(star_.apart);
   Answer answer;
@@ -103,8 +109,10 @@ ConeProgram::Answer ConeProgram::solve(const std::vector<const Ray*>& rays, doub
     answer.bound = std::max(answer.bound, bound);
     if (kind_ != Cost::Kind::quadratic || answer.impossible) break;
     const double raised = answer.bound - before;
-    const bool may_reach = answer.bound + 4 * raised >= goal;
-    if (round > 0 && raised <= (may_reach ? closed_tangents : little) * answer.bound) break;
+    const bool may_reach = exact || answer.bound + 4 * raised >= goal;
+    if (round > 0 && answer.bound > 0 &&
+        raised <= (may_reach ? closed_tangents : little) * answer.bound)
+      break;
     const Vector x = sizes * answer.lambda;
     for (Index i = 0; i < star_.size(); ++i) {
       const double reach = star_.apart[i] + std::max(star_.up[i], star_.down[i]);

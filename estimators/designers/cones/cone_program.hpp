@@ -24,7 +24,8 @@ struct Ray {
 /// λ_j v_j⁻/down ≤ 1 per entry. A quadratic cost is met by tangents.
 class ConeProgram {
  public:
-  ConeProgram(const Star& star, Cost::Kind kind, Index pairs);
+  /// `slack`, per pair: by how much less than 1 the sums may be.
+  ConeProgram(const Star& star, Cost::Kind kind, Vector slack);
 
   struct Answer {
     bool solved = false;
@@ -32,17 +33,18 @@ class ConeProgram {
     bool impossible = false;  ///< proven: no input of the box is in these cones and separates
     Vector lambda;
   };
-  /// Tangents are added as long as they may still raise the bound to `goal`, or raise it much.
-  Answer solve(const std::vector<const Ray*>& rays, double goal) const;
+  /// Tangents are added as long as they raise the bound much, or may raise it to `goal`; with
+  /// `exact` as long as they raise it.
+  Answer solve(const std::vector<const Ray*>& rays, double goal, bool exact = false) const;
 
  private:
   BoundedProgram program(const std::vector<const Ray*>& rays) const;
-  void add_cost(BoundedProgram& program, const Matrix& sizes) const;
+  void add_cost(BoundedProgram& program, const Matrix& sizes, double goal) const;
   void touch(BoundedProgram& program, const Matrix& sizes, Index i, double at) const;
 
   const Star& star_;
   Cost::Kind kind_;
-  Index pairs_;
+  Vector slack_;
 };
 
 }  // namespace cordon::designers

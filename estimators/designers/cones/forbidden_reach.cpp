@@ -62,4 +62,9 @@ ForbiddenReach::Answer ForbiddenReach::along(const Vector& v) const {
   return answer;
 }
 
+double ForbiddenReach::inverse_within(const Vector& size) const {
+  const Vector moved = (1 + row_noise) * linalg::product(N_.cwiseAbs(), size);
+  return moved.size() ? moved.cwiseQuotient(room_).maxCoeff() : 0;
+}
+
 }  // namespace cordon::designers

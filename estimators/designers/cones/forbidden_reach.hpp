@@ -26,6 +26,8 @@ class ForbiddenReach {
   /// roundoffs of their terms included. Where those of z may be moved by `room` and be met all the
   /// same, which is proven, a share λ = r / (r + room) of z makes up for it: (1 - λ) θ is proven.
   Answer along(const Vector& v) const;
+  /// κ keeps below ε within z ± s size, entry by entry, for 1/s this.
+  double inverse_within(const Vector& size) const;
 
  private:
   ForbiddenReach(const PairProgram& pair, const Star& star, ScaledPair rows, Matrix G, Matrix N,

@@ -51,7 +51,10 @@ void ConeSearch::begin() {
     return;
   }
   for (Ray& ray : rays_) ray.inverse += rounding_along(ray.v);
-  program_.emplace(star_, problem_.cost.kind, static_cast<Index>(pairs_.size()));
+  Vector slack(static_cast<Index>(pairs_.size()));
+  for (Index q = 0; q < slack.size(); ++q)
+    slack[q] = pairs_[static_cast<std::size_t>(q)].second.inverse_within(star_.neglected);
+  program_.emplace(star_, problem_.cost.kind, std::move(slack));
   root.needed.assign(root.rays.size(), false);
   keep(std::move(root), 0);
   if (!open_.empty()) {
@@ -165,7 +168,7 @@ void ConeSearch::visit(const Node& node, double bound) {
 /// A node that leads to no other one, once its bound is as good as it gets.
 void ConeSearch::settle(const Node& node, double bound) {
   if (node.exact || problem_.cost.kind != Cost::Kind::quadratic) return close(bound);
-  keep(node, bound, 0);
+  keep(node, bound, true);
 }
 
 /// Where rays of opposite signs in an entry were chosen: one child for each sign of it.
@@ -224,17 +227,17 @@ void ConeSearch::divide(const Node& node, double bound, const std::vector<std::s
   }
 }
 
-void ConeSearch::keep(Node node, double parent_bound, double goal) {
+void ConeSearch::keep(Node node, double parent_bound, bool exact) {
   std::vector<const Ray*> rays;
   for (const std::int32_t ray : node.rays) rays.push_back(&rays_[static_cast<std::size_t>(ray)]);
   ++programs_;
-  ConeProgram::Answer answer = program_->solve(rays, goal);
+  ConeProgram::Answer answer = program_->solve(rays, known_.cost, exact);
   if (answer.impossible) return;
   if (!answer.solved) return close(parent_bound);
   const double bound = std::max(parent_bound, answer.bound);
   if (good_enough(bound)) return close(bound);
   node.lambda = std::move(answer.lambda);
-  node.exact = goal == 0;
+  node.exact = exact;
   open_.emplace(bound, std::move(node));
 }
 

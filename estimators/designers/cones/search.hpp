@@ -60,8 +60,7 @@ class ConeSearch {
   void divide(const Node& node, double bound, const std::vector<std::size_t>& chosen, Ray ray);
   bool divide_by_sign(const Node& node, double bound, const std::vector<std::size_t>& chosen);
   Node without(const Node& node, std::size_t left_out, const std::vector<Vector>& beside) const;
-  void keep(Node node, double parent_bound, double goal);
-  void keep(Node node, double parent_bound) { keep(std::move(node), parent_bound, known_.cost); }
+  void keep(Node node, double parent_bound, bool exact = false);
   void settle(const Node& node, double bound);
   void close(double bound) { closed_ = std::min(closed_, bound); }
   Vector inverse_along(const Vector& v);

@@ -2,10 +2,18 @@
 #include "designers/cones/star.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "cordon/core/rounding.hpp"
 
 namespace cordon::designers {
+
+namespace {
+
+constexpr double sliver_share = 1e-13;  ///< of an entry's size: what rounding of its ends leaves
+
+}  // namespace
 
 Star::Star(const SeparationProblem& problem) : centre(problem.U.c) {
   const InputSequences& U = problem.U;
@@ -25,11 +33,15 @@ Star::Star(const SeparationProblem& problem) : centre(problem.U.c) {
     farthest[i] = low ? lower[i] : upper[i];
   }
   up = down = Vector(size());
-  const auto outward = [](double x) { return x > 0 ? rounding::up(x) : 0; };
+  neglected = Vector::Zero(size());
   for (Index k = 0; k < size(); ++k) {
     const Index i = free[static_cast<std::size_t>(k)];
-    up[k] = outward(upper[i] - centre[i]);
-    down[k] = outward(centre[i] - lower[i]);
+    const double sliver = sliver_share * (std::abs(lower[i]) + std::abs(upper[i]));
+    for (const auto& [way, length] :
+         {std::pair(&up, upper[i] - centre[i]), std::pair(&down, centre[i] - lower[i])}) {
+      (*way)[k] = length > sliver ? rounding::up(length) : 0;
+      if (length <= sliver) neglected[k] += rounding::up(length);
+    }
   }
   apart = (centre - cost.reference)(free).cwiseAbs();
   weights = cost.weights(free);

@@ -21,6 +21,7 @@ struct Star {
   Vector centre;            ///< z, all entries
   std::vector<Index> free;  ///< those that vary
   Vector up, down;          ///< n, ≥ 0
+  Vector neglected;         ///< n: how far entries may go beside `up` and `down` where one is 0
   Vector apart, weights;    ///< n
   double fixed = 0;         ///< the cost of the entries that do not vary
   double most = 0;          ///< no input of the box costs more
