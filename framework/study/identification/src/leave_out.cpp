@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <chrono>
 #include <numeric>
 #include <optional>
 
 #include "cordon/study/identify.hpp"
+#include "study/identification/fewest_left_out.hpp"
 
 namespace cordon {
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr std::size_t most_candidates = 16;  ///< of the samples that require a factor
+constexpr Index most_programs = 200;         ///< for the proof that no fewer samples do
 
 class Leaver {
  public:
@@ -63,6 +68,28 @@ std::optional<LeftOutSamples::Step> best_of(Leaver& leaver, const std::vector<In
   return best;
 }
 
+/// Fewer samples than those of the result, or the proof that there are none.
+void make_fewest(LeftOutSamples& result, const Model& model, std::span<const Sample> samples,
+                 double wanted, const IdentifyOptions& options, const std::function<bool()>& stop) {
+  const auto factors = [&](const std::set<Index>& left_out) {
+    Leaver leaver(model, samples, options, stop);
+    for (const Index k : left_out) leaver.without_outputs(k);
+    return leaver.factors();
+  };
+  const auto end = Clock::now() + std::chrono::duration<double>(options.seconds);
+  const auto is_over = [&] { return (stop && stop()) || Clock::now() >= end; };
+  const identification::FewestLeftOut fewest = identification::fewest_left_out(
+      factors, wanted, std::ssize(result.steps), result.at_least, most_programs, is_over);
+  result.at_least = fewest.at_least;
+  if (!fewest.samples) return;
+  result.steps.clear();
+  std::set<Index> left_out;
+  for (const Index k : *fewest.samples) {
+    left_out.insert(k);
+    result.steps.push_back({k, factors(left_out)});
+  }
+}
+
 }  // namespace
 
 LeftOutSamples leave_out(const Model& model, std::span<const Sample> samples, double wanted,
@@ -93,6 +120,8 @@ LeftOutSamples leave_out(const Model& model, std::span<const Sample> samples, do
     for (const Index used : is_proven ? more.required_by : std::vector<Index>{k})
       others.without_outputs(used);
   }
+  if (result.is_enough && result.at_least < std::ssize(result.steps))
+    make_fewest(result, model, samples, wanted, options, stop);
   return result;
 }
 

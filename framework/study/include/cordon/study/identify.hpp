@@ -63,14 +63,17 @@ struct LeftOutSamples {
     BoundFactors factors;  ///< of the samples that are left then
   };
   std::vector<Step> steps;  ///< one sample after the other
-  /// So many have to be left out at least: there are as many sets of samples, without any in
-  /// common, of which each is proven to require a larger factor.
+  /// So many have to be left out at least, which is proven: by as many sets of samples without any
+  /// in common, each of which requires a larger factor; or since no fewer samples hit all such sets
+  /// that were found.
   Index at_least = 0;
   bool is_enough = false;  ///< the factor wanted was reached
 };
 
 /// Greedily: of the samples that require the factor the one that leaves the smallest one. Some
-/// dozen programs for each. `stop` is asked between them.
+/// dozen programs for each. Where these are enough and more than what is proven to be needed, up to
+/// 200 programs search for fewer, or prove that there are none, for `seconds` at most. `stop` is
+/// asked between them.
 LeftOutSamples leave_out(const Model& model, std::span<const Sample> samples, double wanted,
                          Index most, const IdentifyOptions& options,
                          const std::function<bool()>& stop = {});
