@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "designers/exact_search.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "designers/cones/search.hpp"
@@ -31,7 +32,7 @@ SearchResult without_input(SearchResult result) {
 SearchResult concluded(const KnownAnswer& known, double gap, SearchResult result) {
   result.u = known.u;
   result.cost = known.u ? known.cost : 0;
-  result.lower_bound = known.bound;
+  result.lower_bound = std::min(known.bound, known.cost);
   if (is_closed(known, gap)) {
     result.status = DesignStatus::optimal;
     result.stopped = false;

@@ -275,9 +275,21 @@ DesignOutcome TubeDesigner::cheapest_of(const Horizons& horizons, DesignControl&
     result.facets += all[k].facets;
     if (k != chosen) result.tried.push_back(trial_of(all[k]));
   }
-  if (!result.best) return result;
   const bool complete = static_cast<Index>(all.size()) == horizons.last;
-  const double bound = complete ? all[open].lower_bound : -infinity, cost = result.best->cost;
+  const double bound = complete ? all[open].lower_bound : -infinity;
+  if (!result.best) {
+    const auto undecided = std::ranges::find_if(
+        all, [](const auto& one) { return one.status != DesignStatus::infeasible; });
+    if (undecided == all.end() && complete) return result;
+    result.status = DesignStatus::unknown;
+    result.lower_bound = bound;
+    result.stopped = true;
+    result.reason = undecided == all.end()
+                        ? "longer horizons were not searched"
+                        : fmt::format("N = {}: {}", undecided->horizon, undecided->reason);
+    return result;
+  }
+  const double cost = result.best->cost;
   result.lower_bound = std::min(bound, result.lower_bound);
   if (result.status == DesignStatus::optimal && result.lower_bound < cost * (1 - same_cost)) {
     result.status = DesignStatus::feasible;

@@ -171,6 +171,40 @@ TEST_CASE(
   CHECK(open <= 4);  // quadratic costs
 }
 
+TEST_CASE("Inputs that cannot vary, and entries that cost nothing") {
+  const PairProgram pair = pair_of(0, 1, Matrix::Ones(1, 1), numbers({0}), Matrix::Ones(1, 2));
+  for (const Cost::Kind kind : kinds) {
+    SeparationProblem point = problem_of({pair}, boxed_inputs(2, 0), kind, .1);
+    point.U.c = numbers({.5, .25});
+    CHECK(exactly(point).status == DesignStatus::infeasible);
+    point.U.c = numbers({.5, 1.25});
+    const SearchResult found = exactly(point);
+    CHECK(found.status == DesignStatus::optimal);
+    check_answer(point, found);
+    SeparationProblem free = problem_of({pair}, boxed_inputs(2, 1), kind, .1);
+    free.cost.weights.setZero();
+    check_optimal(free, exactly(free), 0);
+    free.cost.weights[0] = 1;
+    check_optimal(free, exactly(free), kind == Cost::Kind::quadratic ? .01 : .1);
+  }
+}
+
+TEST_CASE("The program of a cone, with room in its sums") {
+  const SeparationProblem problem = problem_of({}, boxed_inputs(1, 1), Cost::Kind::norm_1, 0);
+  const Star star(problem);
+  const Ray ray{numbers({1}), numbers({4, 5})};
+  const ConeProgram::Answer exact =
+      ConeProgram(star, Cost::Kind::norm_1, numbers({0, 0}), 0).solve({&ray}, infinity);
+  CHECK(exact.bound == doctest::Approx(.25));
+  const ConeProgram::Answer roomy =
+      ConeProgram(star, Cost::Kind::norm_1, numbers({6, 0}), 0).solve({&ray}, infinity);
+  CHECK_FALSE(roomy.impossible);
+  CHECK(roomy.bound == doctest::Approx(.2));
+  const Ray far{numbers({1}), numbers({.5, 5})};
+  CHECK(
+      ConeProgram(star, Cost::Kind::norm_1, numbers({0, 0}), 0).solve({&far}, infinity).impossible);
+}
+
 TEST_CASE("Inputs that begin at the reference, up to the rounding of their ends") {
   std::mt19937 random(5);
   for (const auto& [middle, radius, reference] :

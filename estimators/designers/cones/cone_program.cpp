@@ -12,16 +12,15 @@ namespace {
 
 constexpr double missing_price =
     1e3;  ///< of what a sum misses, in units of the largest cost: an input that needs it is none
-constexpr double shrunk = 1 - 1e-12;  ///< what rounding of the terms of a cost can take from it
-constexpr double box_rounding = 1e-12;
-constexpr int most_touches = 12;  ///< of tangents
+constexpr double cost_rounding = 1e-12;  ///< what rounding of the terms of a cost can take from it
+constexpr int most_touches = 12;         ///< of tangents
 constexpr double closed_tangents = 1e-10,
                  little = .01;  ///< of the bound: what a round raises it by
 
 }  // namespace
 
-ConeProgram::ConeProgram(const Star& star, Cost::Kind kind, Vector slack)
-    : star_(star), kind_(kind), slack_(std::move(slack)) {}
+ConeProgram::ConeProgram(const Star& star, Cost::Kind kind, Vector slack, double rounding)
+    : star_(star), kind_(kind), slack_(std::move(slack)), rounding_(rounding) {}
 
 BoundedProgram ConeProgram::program(const std::vector<const Ray*>& rays) const {
   const auto count = static_cast<Index>(rays.size());
@@ -32,7 +31,7 @@ BoundedProgram ConeProgram::program(const std::vector<const Ray*>& rays) const {
   for (Index q = 0; q < slack_.size(); ++q) {
     Vector row = Vector::Zero(count + slack_.size());
     for (Index j = 0; j < count; ++j) row[j] = rays[static_cast<std::size_t>(j)]->inverse[q];
-    const double most = row.sum() + 1;
+    const double most = row.sum() + 1 + slack_[q];
     row[count + q] = 1;
     program.add_row_above(row, 1 - slack_[q], 0, most);
   }
@@ -42,7 +41,7 @@ BoundedProgram ConeProgram::program(const std::vector<const Ray*>& rays) const {
       const double v = rays[static_cast<std::size_t>(j)]->v[i];
       if (v != 0) row[j] = -std::abs(v) / (v > 0 ? star_.up[i] : star_.down[i]);
     }
-    program.add_row_above(row, -1 - box_rounding, 0, 1);
+    program.add_row_above(row, -1 - cost_rounding - rounding_, 0, 1);
   }
   return program;
 }
@@ -92,6 +91,7 @@ ConeProgram::Answer ConeProgram::solve(const std::vector<const Ray*>& rays, doub
   for (Index j = 0; j < count; ++j) sizes.col(j) = rays[static_cast<std::size_t>(j)]->v.cwiseAbs();
   BoundedProgram program = this->program(rays);
   add_cost(program, sizes, goal);
+  const double shrunk = 1 - cost_rounding - 2 * rounding_;
   double constant = star_.fixed;
   if (kind_ == Cost::Kind::norm_1) constant += star_.weights.dot(star_.apart);
   Answer answer;

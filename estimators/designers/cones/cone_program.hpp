@@ -24,8 +24,9 @@ struct Ray {
 /// λ_j v_j⁻/down ≤ 1 per entry. A quadratic cost is met by tangents.
 class ConeProgram {
  public:
-  /// `slack`, per pair: by how much less than 1 the sums may be.
-  ConeProgram(const Star& star, Cost::Kind kind, Vector slack);
+  /// `slack`, per pair: by how much less than 1 the sums may be; `rounding`: the share of an entry
+  /// by which rays are wrong at most.
+  ConeProgram(const Star& star, Cost::Kind kind, Vector slack, double rounding);
 
   struct Answer {
     bool solved = false;
@@ -45,6 +46,7 @@ class ConeProgram {
   const Star& star_;
   Cost::Kind kind_;
   Vector slack_;
+  double rounding_;
 };
 
 }  // namespace cordon::designers

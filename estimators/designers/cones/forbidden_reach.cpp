@@ -48,7 +48,10 @@ ForbiddenReach::Answer ForbiddenReach::along(const Vector& v) const {
   if (!farthest.solved || !farthest.xi) return answer;
   const Vector& xi = *farthest.xi;
   const double most = .5 * most_times * (1 + std::clamp(xi[g], -1.0, 1.0));
-  if (xi[g] < ended && farthest.y.allFinite()) answer.facet = facet_of(rows_, -farthest.y);
+  if (xi[g] < ended && farthest.y.allFinite()) {
+    const SeparatingFacet facet = facet_of(rows_, -farthest.y);
+    if (!facet.a.isZero(0)) answer.facet = facet;
+  }
   const Vector inside = xi.head(g).cwiseMax(-1.0).cwiseMin(1.0);
   const double noise =
       row_noise + static_cast<double>(g + N_.cols() + 4) * std::numeric_limits<double>::epsilon();

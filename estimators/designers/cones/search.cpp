@@ -12,6 +12,7 @@ namespace cordon::designers {
 namespace {
 
 constexpr double met_by = 1e-9;             ///< by which a solver's point may miss a chosen facet
+constexpr double met_kappa = 1e-6;          ///< likewise, of κ then
 constexpr double separates_by = 1e-11;      ///< a ray's end by this much nearer does as well
 constexpr double smallest_share = 1e-7;     ///< of the largest λ: smaller ones are 0
 constexpr int most_generations = 100;       ///< of rays, for which `slack` has room
@@ -29,6 +30,10 @@ ConeSearch::ConeSearch(const SeparationProblem& problem, NodeProgram& inputs, Kn
 
 void ConeSearch::begin() {
   begun_ = true;
+  if (star_.size() == 0 || !(star_.most > 0)) {
+    ended_ = true;  // nothing varies, or nothing costs
+    return;
+  }
   for (std::size_t q = 0; q < problem_.pairs.size() && !watch_.over(); ++q) {
     ++programs_;
     if (auto reach = ForbiddenReach::of(problem_, problem_.pairs[q], star_))
@@ -46,7 +51,7 @@ void ConeSearch::begin() {
     }
   }
   forget_unseen_pairs();
-  if (watch_.over() || pairs_.empty() || !(star_.most > 0)) {
+  if (watch_.over() || pairs_.empty()) {
     ended_ = true;
     return;
   }
@@ -54,7 +59,7 @@ void ConeSearch::begin() {
   Vector slack(static_cast<Index>(pairs_.size()));
   for (Index q = 0; q < slack.size(); ++q)
     slack[q] = pairs_[static_cast<std::size_t>(q)].second.inverse_within(star_.neglected);
-  program_.emplace(star_, problem_.cost.kind, std::move(slack));
+  program_.emplace(star_, problem_.cost.kind, std::move(slack), rounding());
   root.needed.assign(root.rays.size(), false);
   keep(std::move(root), 0);
   if (!open_.empty()) {
@@ -77,17 +82,22 @@ void ConeSearch::forget_unseen_pairs() {
   for (Ray& ray : rays_) ray.inverse = Vector(ray.inverse(seen));
 }
 
+/// The share of an entry that a ray is wrong by at most: of sums of up to n + pairs rays of one
+/// orthant, generation by generation.
+double ConeSearch::rounding() const {
+  return most_generations * static_cast<double>(star_.size() + std::ssize(pairs_) + 3) *
+         std::numeric_limits<double>::epsilon();
+}
+
 /// By how much less than 1 the sums of an input in a cone may be because of the rounding of rays,
 /// per length of v: an error of a share η of every entry, followed along the axes.
 Vector ConeSearch::rounding_along(const Vector& v) const {
-  const double share = most_generations * static_cast<double>(star_.size() + 3) *
-                       std::numeric_limits<double>::epsilon();
   Vector both(2 * v.size());
   for (Index i = 0; i < v.size(); ++i) {
     both[2 * i] = std::max(v[i], 0.0);
     both[2 * i + 1] = std::max(-v[i], 0.0);
   }
-  return share * linalg::product(of_axes_, both);
+  return rounding() * linalg::product(of_axes_, both);
 }
 
 void ConeSearch::run(std::int64_t nodes) {
@@ -95,11 +105,7 @@ void ConeSearch::run(std::int64_t nodes) {
   for (std::int64_t n = 0; !ended_ && n < nodes; ++n) {
     raise_bound();
     watch_.progress(known_.cost, known_.bound);
-    if (open_.empty()) {
-      ended_ = true;
-      impossible_ = closed_ == infinity && !known_.u;
-      break;
-    }
+    if (open_.empty()) break;
     const double bound = open_.begin()->first;
     if (good_enough(known_.bound) || bound >= closed_ || open_.size() > most_open) {
       ended_ = true;
@@ -109,6 +115,10 @@ void ConeSearch::run(std::int64_t nodes) {
     const Node node = std::move(open_.extract(open_.begin()).mapped());
     ++nodes_;
     visit(node, bound);
+  }
+  if (program_ && open_.empty()) {
+    ended_ = true;
+    impossible_ = closed_ == infinity && !known_.u;
   }
   raise_bound();
 }
@@ -129,6 +139,7 @@ Vector ConeSearch::inverse_along(const Vector& v) {
 
 std::vector<std::size_t> ConeSearch::support_of(const Node& node) const {
   std::vector<std::size_t> chosen;
+  if (node.lambda.size() == 0) return chosen;
   const double least = smallest_share * node.lambda.maxCoeff();
   for (Index j = 0; j < node.lambda.size(); ++j) {
     if (node.lambda[j] > least) chosen.push_back(static_cast<std::size_t>(j));
@@ -264,10 +275,12 @@ bool ConeSearch::offer(const Vector& u, const std::vector<std::optional<Separati
   const double cost = problem_.cost.at(u);
   if (known_.u && !(cost < known_.cost)) return false;
   for (std::size_t q = 0; q < facets.size(); ++q) {
-    if (facets[q] && facets[q]->a.dot(zeta) >= facets[q]->out - met_by) continue;
+    const bool is_met = facets[q] && facets[q]->a.dot(zeta) >= facets[q]->out - met_by;
+    if (is_met && problem_.epsilon == 0) continue;  // they may touch
     if (watch_.over()) return false;
     const PairSeparation apart = separation(problem_.pairs[q], u);
-    if (apart.disjoint != Answer::yes || !(apart.kappa_lower >= problem_.epsilon)) return false;
+    const double least = problem_.epsilon - (is_met ? met_kappa : 0);
+    if (apart.disjoint != Answer::yes || !(apart.kappa_lower >= least)) return false;
   }
   known_.offer(u, cost);
   return true;

@@ -64,6 +64,7 @@ class ConeSearch {
   void settle(const Node& node, double bound);
   void close(double bound) { closed_ = std::min(closed_, bound); }
   Vector inverse_along(const Vector& v);
+  double rounding() const;
   Vector rounding_along(const Vector& v) const;
   void forget_unseen_pairs();
   std::vector<std::size_t> support_of(const Node& node) const;
