@@ -16,10 +16,6 @@ constexpr double share_of_facets = .5;       ///< of what is left of it then
 constexpr double share_of_reasons = .1;      ///< likewise, where it is known that there is no input
 constexpr std::int64_t nodes_first = 10000;  ///< for sums of absolute inputs, none else
 
-bool is_closed(const KnownAnswer& known, double gap) {
-  return known.u && known.bound >= known.cost - gap * known.cost;
-}
-
 SearchResult without_input(SearchResult result) {
   result.status = DesignStatus::infeasible;
   result.u.reset();
@@ -33,7 +29,7 @@ SearchResult concluded(const KnownAnswer& known, double gap, SearchResult result
   result.u = known.u;
   result.cost = known.u ? known.cost : 0;
   result.lower_bound = std::min(known.bound, known.cost);
-  if (is_closed(known, gap)) {
+  if (known.is_closed(gap)) {
     result.status = DesignStatus::optimal;
     result.stopped = false;
     result.reason = result.suggestion = {};
@@ -56,15 +52,15 @@ SearchResult search_exactly(const SeparationProblem& problem, const FacetLimits&
   cones.run(of_sums ? nodes_first : 0);
 
   SearchResult result;
-  if (!is_closed(known, limits.gap)) {
+  if (!known.is_closed(limits.gap)) {
     FacetLimits here = limits;
     here.time_limit = watch.left();
     if (cones.impossible()) here.time_limit *= share_of_reasons;
     if (!cones.ended()) here.time_limit *= share_of_facets;
-    result = search_facets(problem, here, control, &known);
+    result = search_facets(problem, here, known, control);
     if (result.u) known.offer(*result.u, result.cost);
     known.raise(result.lower_bound);
-    if (result.status != DesignStatus::infeasible && !is_closed(known, limits.gap))
+    if (result.status != DesignStatus::infeasible && !known.is_closed(limits.gap))
       cones.run(std::numeric_limits<std::int64_t>::max());
     result.stopped = result.stopped || watch.over();
   }

@@ -19,6 +19,9 @@ struct KnownAnswer {
     u = input;
     cost = its_cost;
   }
+  /// Does no input cost less than this one by more than a share `gap`, given a lower bound?
+  bool is_met_by(double lower, double gap) const { return u && lower >= cost - gap * cost; }
+  bool is_closed(double gap) const { return is_met_by(bound, gap); }
   void raise(double proven) { bound = std::max(bound, std::min(proven, cost)); }
 };
 

@@ -13,11 +13,6 @@ using namespace cordon::examples;
 
 namespace {
 
-SearchResult search(const SeparationProblem& problem) {
-  DesignControl control;
-  return search_facets(problem, {}, control);
-}
-
 /// u moves the first row, noise both; the second row is `offset` apart.
 SeparationProblem apart_by(double offset, double epsilon, double most_input) {
   const Matrix G{{.25, .25, .25, .25, 0, 0, 0, 0}, {0, 0, 0, 0, .25, .25, .25, .25}};
@@ -55,9 +50,9 @@ TEST_CASE("a margin without inputs that is met exactly is not denied") {
       CAPTURE(epsilon);
       CAPTURE(beyond);
       const double margin = 1 + epsilon;
-      SearchResult found = search(apart_by(margin + beyond, epsilon, .5));
+      SearchResult found = searched(apart_by(margin + beyond, epsilon, .5));
       CHECK(found.status != DesignStatus::infeasible);
-      found = search(apart_by(margin + beyond, epsilon, 4));
+      found = searched(apart_by(margin + beyond, epsilon, 4));
       CHECK(found.status != DesignStatus::infeasible);
       CHECK(found.lower_bound <= 1e-9);  // u = 0 separates
     }
@@ -67,8 +62,8 @@ TEST_CASE("a margin without inputs that is met exactly is not denied") {
 TEST_CASE("a margin without inputs that is missed is told as such, and inputs take its place") {
   for (const double missing : {1e-6, 1e-3, .5}) {
     CAPTURE(missing);
-    CHECK(search(apart_by(1.25 - missing, .25, .5)).status == DesignStatus::infeasible);
-    const SearchResult found = search(apart_by(1.25 - missing, .25, 4));
+    CHECK(searched(apart_by(1.25 - missing, .25, .5)).status == DesignStatus::infeasible);
+    const SearchResult found = searched(apart_by(1.25 - missing, .25, 4));
     if (missing > 1e-5) {
       check_optimal(apart_by(1.25 - missing, .25, 4), found, 1.25);
       continue;
@@ -84,7 +79,7 @@ TEST_CASE("outputs without noise that differ in their last digits are not taken 
   const Model one = half_noisy(Matrix{{1}, {1}});
   for (const double more : {std::ldexp(1., -52), std::ldexp(1., -44), 1e-13}) {
     CAPTURE(more);
-    const SearchResult found = search(of_models(one, half_noisy(Matrix{{2}, {1 + more}})));
+    const SearchResult found = searched(of_models(one, half_noisy(Matrix{{2}, {1 + more}})));
     CHECK(found.status != DesignStatus::infeasible);
     CHECK(found.status != DesignStatus::optimal);
   }
@@ -92,7 +87,7 @@ TEST_CASE("outputs without noise that differ in their last digits are not taken 
 
 TEST_CASE("outputs without noise that are the same are known to be") {
   const Model one = half_noisy(Matrix{{1}, {1}});
-  const SearchResult found = search(of_models(one, half_noisy(Matrix{{2}, {1}})));
+  const SearchResult found = searched(of_models(one, half_noisy(Matrix{{2}, {1}})));
   CHECK(found.status == DesignStatus::infeasible);
 }
 
@@ -115,7 +110,7 @@ TEST_CASE(
   };
   const double rounded = .1 * 3;
   REQUIRE(std::fma(.1, 3., -rounded) != 0);
-  const SearchResult found = search(of_models(model(.1, 3, 1), model(1, rounded, 2)));
+  const SearchResult found = searched(of_models(model(.1, 3, 1), model(1, rounded, 2)));
   CHECK(found.status != DesignStatus::infeasible);
   CHECK(found.status != DesignStatus::optimal);
 }
@@ -146,7 +141,7 @@ TEST_CASE("outputs that differ by a hair pin a disturbance, and no bound lies ab
         tubes.push_back(output_tube(*model, *backend("line_zonotope"), {1}));
       const auto pairs = pair_programs(tubes);
       const SearchResult found =
-          search(problem_of(pairs, boxed_inputs(2, 20), Cost::Kind::norm_1, epsilon));
+          searched(problem_of(pairs, boxed_inputs(2, 20), Cost::Kind::norm_1, epsilon));
       CAPTURE(s);
       CAPTURE(hair);
       CHECK(found.status != DesignStatus::infeasible);

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "designers/facets/first_input.hpp"
 #include "designers/facets/forbidden_set.hpp"
 #include "designers/facets/search.hpp"
 #include "input_design/plugins.hpp"
@@ -82,10 +83,20 @@ inline PairProgram random_pair(std::mt19937& random, Index i, Index j, Index m, 
                  .1 * random_matrix(random, m, 1), N);
 }
 
+/// The search over facets alone, from a first input.
 inline designers::SearchResult searched(const SeparationProblem& problem,
-                                        designers::FacetLimits limits = {}) {
+                                        const designers::FacetLimits& limits,
+                                        DesignControl& control) {
+  designers::NodeProgram program(problem);
+  const designers::Watch early(control, problem.horizon, .05 * limits.time_limit);
+  const designers::KnownAnswer first =
+      designers::first_input(problem, program, [&] { return early.over(); });
+  return designers::search_facets(problem, limits, first, control);
+}
+inline designers::SearchResult searched(const SeparationProblem& problem,
+                                        const designers::FacetLimits& limits = {}) {
   DesignControl control;
-  return designers::search_facets(problem, limits, control);
+  return searched(problem, limits, control);
 }
 
 inline designers::ForbiddenSet forbidden(const PairProgram& pair, const InputSequences& U,

@@ -208,7 +208,7 @@ TEST_CASE("A search that is stopped says so, and proves what it can") {
   int with_input = 0, before_the_search = 0;
   for (int after = 0; after < 1500; after += 25) {
     Stop control(after);
-    const SearchResult found = search_facets(problem, {}, control);
+    const SearchResult found = searched(problem, {}, control);
     CHECK(found.lower_bound <= optimum + 1e-9);
     if (found.status == DesignStatus::optimal) {
       CHECK(found.cost == doctest::Approx(optimum).epsilon(1e-9));
@@ -226,7 +226,7 @@ TEST_CASE("A search that is stopped says so, and proves what it can") {
   CHECK(with_input > before_the_search);
   CHECK(before_the_search > 0);
   Stop watched(1000000);
-  search_facets(problem, {}, watched);
+  searched(problem, {}, watched);
   CHECK(watched.reports > 0);
 
   FacetLimits none;

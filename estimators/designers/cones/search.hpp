@@ -71,9 +71,7 @@ class ConeSearch {
   void descend(Vector v);
   bool offer(const Vector& u, const std::vector<std::optional<SeparatingFacet>>& facets,
              const Vector& zeta);
-  bool good_enough(double bound) const {
-    return known_.u && bound >= known_.cost - gap_ * known_.cost;
-  }
+  bool good_enough(double bound) const { return known_.is_met_by(bound, gap_); }
   void raise_bound();
   const Vector& direction(std::int32_t ray) const { return rays_[static_cast<std::size_t>(ray)].v; }
 

@@ -11,7 +11,6 @@
 
 #include "cordon/core/linalg.hpp"
 #include "designers/facets/facet_dual.hpp"
-#include "designers/facets/first_input.hpp"
 #include "designers/facets/node_program.hpp"
 
 namespace cordon::designers {
@@ -21,7 +20,6 @@ namespace {
 constexpr double met_tolerance = 1e-9;  ///< by which a solver's point may miss a chosen facet; the
                                         ///< factors of inputs are of size 1
 constexpr int most_refinements = 60;    ///< of a node; each divides the error of the tangents by 4
-constexpr double share_of_first_input = .05;  ///< of the time limit
 constexpr const char* more_facets =
     "a larger max_facets, a shorter horizon, or the designer \"milp\"";
 constexpr const char* more_room = "a larger input set, a longer horizon, or a smaller epsilon";
@@ -57,8 +55,8 @@ bool is_beyond(const SeparatingFacet& facet, const Vector& zeta, double toleranc
 
 class FacetSearch {
  public:
-  FacetSearch(const SeparationProblem& problem, const FacetLimits& limits, DesignControl& control,
-              const KnownAnswer& known)
+  FacetSearch(const SeparationProblem& problem, const FacetLimits& limits, const KnownAnswer& known,
+              DesignControl& control)
       : problem_(problem),
         limits_(limits),
         watch_(control, problem.horizon, limits.time_limit),
@@ -387,14 +385,8 @@ bool FacetSearch::is_hopeless(const OpenPair& open) {
 }  // namespace
 
 SearchResult search_facets(const SeparationProblem& problem, const FacetLimits& limits,
-                           DesignControl& control, const KnownAnswer* known) {
-  KnownAnswer first;
-  if (!known) {
-    const Watch early(control, problem.horizon, share_of_first_input * limits.time_limit);
-    NodeProgram program(problem);
-    first = first_input(problem, program, [&] { return early.over(); });
-  }
-  return FacetSearch(problem, limits, control, known ? *known : first).run();
+                           const KnownAnswer& known, DesignControl& control) {
+  return FacetSearch(problem, limits, known, control).run();
 }
 
 }  // namespace cordon::designers

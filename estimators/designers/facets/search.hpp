@@ -22,10 +22,9 @@ struct FacetLimits {
 /// nothing is optimal. What children cost at least follows from the multipliers of their parent,
 /// without a program, as far as possible; ties go to the pair with the fewest facets. All bounds
 /// are proven by multipliers. A pair whose facets are not known is left out: the rest bounds the
-/// cost, and an input that solves the rest is judged by the pair's own κ. What was known before is
-/// the answer where the search finds nothing cheaper, or does not come to its end; `known` absent:
-/// `first_input` is asked.
+/// cost, and an input that solves the rest is judged by the pair's own κ. What is known
+/// before is the answer where the search finds nothing cheaper, or does not come to its end.
 SearchResult search_facets(const SeparationProblem& problem, const FacetLimits& limits,
-                           DesignControl& control, const KnownAnswer* known = nullptr);
+                           const KnownAnswer& known, DesignControl& control);
 
 }  // namespace cordon::designers

@@ -128,15 +128,13 @@ const Value& target(const Cursor& at, std::string& relative) {
   return *value;
 }
 
-/// {"at_most": n}
+/// {"at_most": n} in the place of an integer.
 std::optional<std::int64_t> read_at_most(const Cursor& at, const ParamSpec& most) {
-  at.expect_keys({"at_most"}, "bound", "");
-  const auto value = at.find("at_most");
-  if (!value) {
-    at.error("has no \"at_most\"", "write a number, or {\"at_most\": number}");
+  if (!at.expect_keys({"at_most"}, "bound", "write a number, or {\"at_most\": number}"))
     return std::nullopt;
-  }
-  return read_integer(*value, most.lowest, most.highest);
+  const auto value = at.find("at_most");
+  if (!value) at.error("has no \"at_most\"", "write a number, or {\"at_most\": number}");
+  return value ? read_integer(*value, most.lowest, most.highest) : std::nullopt;
 }
 
 void read_params(const Cursor& at, const ParamSchema& schema, const std::string& component,
@@ -148,13 +146,14 @@ void read_params(const Cursor& at, const ParamSchema& schema, const std::string&
   for (const ParamSpec& spec : schema.specs()) {
     const auto value_at = at.find(spec.name);
     if (!value_at || spec.name == "type") continue;
-    const ParamSpec* most = spec.at_most.empty() ? nullptr : schema.find(spec.at_most);
+    const ParamSpec* most = schema.find(spec.at_most);
     if (most && value_at->is(Kind::object)) {
-      if (auto value = read_at_most(*value_at, *most)) {
+      if (const auto other = at.find(most->name)) {
+        other->error("is given by " + in_quotes(spec.name) + " as well", "remove one of the two");
+      } else if (const auto value = read_at_most(*value_at, *most)) {
         params.set(most->name, *value);
-      } else {
-        wrong.push_back(child("", spec.name));
       }
+      wrong.push_back(child("", spec.name));
       continue;
     }
     if (auto value = as_param(spec, *value_at, context, depth)) {
