@@ -180,7 +180,7 @@ std::string left_out_text(const LeftOutSamples& left_out, const Paint& paint) {
   const Index needed = left_out.at_least;
   if (left_out.is_enough && needed == std::ssize(left_out.steps)) {
     text += "No fewer do, which is proven.\n";
-  } else {
+  } else if (needed > 0) {
     text +=
         fmt::format("At least {} must be left out, which is proven.\n", count(needed, "sample"));
   }

@@ -2,10 +2,12 @@
 // The search over cones: closed forms, the other search on random problems, and designs with more
 // inputs than facets can be enumerated for.
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 #include <doctest/doctest.h>
 
+#include "cordon/core/error.hpp"
 #include "designers/cones/search.hpp"
 #include "designers/exact_search.hpp"
 #include "designers/facets/first_input.hpp"
@@ -203,6 +205,34 @@ TEST_CASE("The program of a cone, with room in its sums") {
   const Ray far{numbers({1}), numbers({.5, 5})};
   CHECK(
       ConeProgram(star, Cost::Kind::norm_1, numbers({0, 0}), 0).solve({&far}, infinity).impossible);
+}
+
+TEST_CASE("What a solver cannot answer proves nothing") {
+  // Numbers that no linear program is solved with: no bound but 0, and nothing is impossible.
+  const SeparationProblem problem = problem_of({}, boxed_inputs(1, 1), Cost::Kind::norm_1, 0);
+  const Star star(problem);
+  for (const double inverse : {infinity, std::numeric_limits<double>::quiet_NaN(), 1e308}) {
+    CAPTURE(inverse);
+    const Ray ray{numbers({1}), numbers({inverse})};
+    ConeProgram::Answer answer;
+    try {
+      answer = ConeProgram(star, Cost::Kind::norm_1, numbers({0}), 0).solve({&ray}, infinity);
+    } catch (const Error&) {
+      continue;
+    }
+    CHECK_FALSE(answer.impossible);
+    CHECK(answer.bound < 1e-300);
+  }
+  // A point that is not known to satisfy its rows: no ray, no end.
+  const PairProgram flat = pair_of(0, 1, Matrix::Zero(1, 1), numbers({0}), Matrix::Ones(1, 1));
+  const SeparationProblem thin = problem_of({flat}, boxed_inputs(1, 1), Cost::Kind::norm_1, .1);
+  CHECK_FALSE(ForbiddenReach::of(thin, flat, Star(thin)));
+  const Known known = known_by_cones(thin, 1e-9);
+  CHECK(known.answer.bound == 0);
+  CHECK_FALSE(known.impossible);
+  PairProgram vanished = pair_of(0, 1, Matrix::Ones(1, 1), numbers({0}), Matrix::Ones(1, 1));
+  vanished.vanished = 1;  // rows that rounding took away might tell them apart
+  CHECK_FALSE(ForbiddenReach::of(thin, vanished, Star(thin)));
 }
 
 TEST_CASE("Inputs that begin at the reference, up to the rounding of their ends") {

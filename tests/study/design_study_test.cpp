@@ -54,9 +54,8 @@ TEST_CASE("a horizon may be written as the largest one") {
   expect_reported(design_study, {fixed, "\"horizon\": {\"at_most\": 7, \"least\": 2}",
                                  "/pipelines/0/designer/horizon/least", "unknown bound",
                                  "there is only \"at_most\""});
-  expect_reported(design_study,
-                  {fixed, most + ", \"longest\": 5", "/pipelines/0/designer/longest",
-                   "is given by \"horizon\" as well", "remove one of the two"});
+  expect_reported(design_study, {fixed, most + ", \"longest\": 5", "/pipelines/0/designer/longest",
+                                 "is given by \"horizon\" as well", "remove one of the two"});
 }
 
 TEST_CASE("without data, designers have the defaults") {

@@ -26,6 +26,7 @@ std::optional<ForbiddenReach> ForbiddenReach::of(const SeparationProblem& proble
   const Matrix N = (rows.scale.asDiagonal() * pair.N)(Eigen::all, star.free);
   const Vector c = rows.scale.cwiseProduct(linalg::product(pair.N, star.centre) - pair.c);
   const Vector size = G.cwiseAbs().rowwise().sum();
+  if (!(size.minCoeff() > 0)) return std::nullopt;  // a row without room
   const Vector terms = rows.factor * rows.scale.cwiseProduct(pair.terms(star.centre.cwiseAbs()));
   for (double share = widest_room; share > narrowest_room; share /= 2) {
     const Vector room = share * size;
