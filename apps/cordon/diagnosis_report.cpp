@@ -162,14 +162,15 @@ std::string number_text(double value) {
 /// Bounds of the state at the end.
 std::string last_state_text(const Study& study, const DiagnosisOutcome& found, const Paint& paint) {
   if (!found.last_state) return "";
-  const auto& [k, mode, hull] = *found.last_state;
+  const auto& [k, mode, hull, since] = *found.last_state;
   Rows rows{{"STATE", "FROM", "TO"}};
   for (Index i = 0; i < hull.dim(); ++i) {
     rows.push_back({label_of(study.labels.states, "x", i), number_text(hull.lower[i]),
                     number_text(hull.upper[i])});
   }
-  return fmt::format("\nThe state in mode \"{}\" at {}\n{}", mode_name(found.modes, mode),
-                     time_text(study.labels, k), table(rows, paint));
+  return fmt::format("\nThe state in mode \"{}\" at {}, if it has lasted since {}\n{}",
+                     mode_name(found.modes, mode), time_text(study.labels, k),
+                     time_text(study.labels, since), table(rows, paint));
 }
 
 /// Its name, or its number.

@@ -185,6 +185,7 @@ void write_members(JsonWriter& json, const DiagnosisOutcome& outcome) {
   if (const auto& state = outcome.last_state) {
     json.begin_object().member("k", state->k);
     write_mode(json, "mode", outcome.modes, state->mode);
+    json.member("since", state->since);
     write_box(json, "hull", state->hull);
     json.end_object();
   } else {

@@ -123,7 +123,8 @@ class DiagnosisRun final : public PipelineRun {
     judge_run();
     if (seed_offset_ == 0 && monitored_ && monitored_->decision == Decision::monitoring) {
       const Box hull = hull_of(monitored_->estimate);
-      if (hull.dim() > 0) found_.last_state = {monitored_->k, monitored_->mode, hull};
+      if (hull.dim() > 0)
+        found_.last_state = {monitored_->k, monitored_->mode, hull, monitored_->since};
     }
     if (failed() && seeds_ > 1)
       outcome_.error +=

@@ -103,10 +103,12 @@ struct FaultOutside {
   std::int64_t seed_offset = 0;
 };
 
-/// Bounds of the state at time k, as long as the plant is in `mode`, which is monitored.
+/// Bounds of the state at time k, if the plant has been in `mode`, which is monitored, since the
+/// sample `since`. A mode that began later than that may have a state outside.
 struct MonitoredState {
   Index k = 0, mode = 0;
   Box hull;
+  Index since = 0;
 };
 
 /// What a diagnoser has found: in full for the first seed, counted over all.
