@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cordon/study/linearise.hpp"
-
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +11,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
+#include "cordon/study/region.hpp"
 #include "json_text.hpp"
 #include "linearised_study.hpp"
 #include "model_json.hpp"

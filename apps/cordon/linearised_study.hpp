@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "cordon/study/linearise.hpp"
+#include "cordon/linearisation/linearise.hpp"
 #include "cordon/study/study.hpp"
 
 namespace cordon::apps {

@@ -16,7 +16,7 @@ constexpr double most_entries = 4e6;  ///< of the rows of a pair, and of the com
                                       ///< come from, before elimination
 constexpr double most_cost = 1e100;   ///< leaves room for the products of a search
 
-Index inputs_of(const ModeBank& bank) { return bank[0].model.linear.inputs(); }
+Index inputs_of(const ModeBank& bank) { return bank[0].model.inputs(); }
 
 /// Rⁿ, as far as it shows: a set without lines left out.
 bool is_space(const LineForm& X) {
@@ -78,7 +78,7 @@ void check_backend(const DesignerContext& context, const Params& params,
 
 void check_admissible_set(const DesignerContext& context, const LineForm& XA,
                           std::vector<Diagnostic>& problems) {
-  const Index states = context.bank[0].model.linear.states();
+  const Index states = context.bank[0].model.states();
   if (XA.dim() != states) {
     problems.push_back(
         {"/admissible_set",
@@ -99,6 +99,15 @@ void check_sets(const DesignerContext& context, std::vector<Diagnostic>& problem
     const std::pair<const char*, const LineForm*> sets[] = {
         {"X0", &mode.model.X0}, {"W", &mode.model.W}, {"V", &mode.model.V}};
     for (const auto& [name, set] : sets) {
+      if (!mode.model.is_linear() && is_bounded(*set) != Answer::yes) {
+        problems.push_back(
+            {"",
+             fmt::format("{} of mode \"{}\" is not bounded, and formulas are followed from "
+                         "bounds of it",
+                         name, mode.name),
+             "give a bounded set"});
+        continue;
+      }
       try {
         context.backend->import(*set);
       } catch (const Error& error) {
@@ -150,11 +159,12 @@ void check_size(const DesignerContext& context, const Params& params,
   const double times = static_cast<double>(horizons_from(params).last) + 1;
   for (const Mode& mode : context.bank.modes) {
     const Model& m = mode.model;
-    rows = std::max(rows, times * static_cast<double>(m.linear.states() + m.linear.outputs() +
-                                                      m.W.constraints() + m.V.constraints()));
+    const Index outputs = m.outputs(), errors = m.is_linear() ? 0 : m.states() + outputs;
+    rows = std::max(rows, times * static_cast<double>(m.states() + outputs + m.W.constraints() +
+                                                      m.V.constraints()));
     columns = std::max(
-        columns, times * static_cast<double>(m.linear.states() + m.W.generators() + m.W.lines() +
-                                             m.V.generators() + m.V.lines() + m.linear.inputs()) +
+        columns, times * static_cast<double>(m.states() + m.W.generators() + m.W.lines() +
+                                             m.V.generators() + m.V.lines() + m.inputs() + errors) +
                      static_cast<double>(m.X0.generators() + m.X0.lines()));
   }
   if (4 * rows * std::max(rows, columns) <= most_entries) return;
@@ -175,6 +185,7 @@ void check_tubes(const DesignerContext& context, const Params& params,
   const Index horizon = horizons_from(params).first;
   const InputSequences U = inputs_from(context.bank, params, horizon);
   for (const Mode& mode : context.bank.modes) {
+    if (!mode.model.is_linear()) continue;  // formulas lead on from every state
     const TubeConditions rows =
         conditions_of(output_tube(mode.model, *context.backend, span_from(params, horizon)));
     if (rows.b.size() == 0) continue;
@@ -248,12 +259,12 @@ std::vector<Diagnostic> check_tube_data(const DesignerContext& context, const Pa
   if (params.has("admissible_set"))
     check_admissible_set(context, params.set_form("admissible_set"), problems);
   for (const Mode& mode : context.bank.modes) {
-    if (mode.model.linear.outputs() == context.bank[0].model.linear.outputs()) continue;
-    problems.push_back({"",
-                        fmt::format("mode \"{}\" has {} outputs, \"{}\" has {}", mode.name,
-                                    mode.model.linear.outputs(), context.bank[0].name,
-                                    context.bank[0].model.linear.outputs()),
-                        "modes are compared by their outputs: all need the same"});
+    if (mode.model.outputs() == context.bank[0].model.outputs()) continue;
+    problems.push_back(
+        {"",
+         fmt::format("mode \"{}\" has {} outputs, \"{}\" has {}", mode.name, mode.model.outputs(),
+                     context.bank[0].name, context.bank[0].model.outputs()),
+         "modes are compared by their outputs: all need the same"});
   }
   check_backend(context, params, problems);
   check_sets(context, problems);

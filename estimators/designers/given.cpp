@@ -10,12 +10,6 @@ namespace cordon::estimators {
 
 namespace {
 
-/// The sequence as it stands in problems: by time, stacked.
-Vector stacked(const Matrix& input) {
-  const Matrix by_column = input.transpose();
-  return Eigen::Map<const Vector>(by_column.data(), by_column.size());
-}
-
 /// Times at which the input is proven to lie outside the set of all inputs, as a sentence; "" if
 /// there are none.
 std::string outside_text(const LineForm& U, const Matrix& input) {
@@ -46,8 +40,10 @@ class Given final : public InputDesigner {
     outcome.epsilon = params_.real("epsilon");
     outcome.last_output_only = span.last_output_only;
     outcome.admissible_set = span.admissible_set;
-    if (const auto problem = designers::problem_at(bank(), backend(), params_, horizon, stop)) {
-      outcome.best = designers::judge(bank(), backend(), params_, *problem, stacked(input), stop);
+    const designers::LinearBank linear(bank(), input);
+    if (const auto problem = designers::problem_at(linear, backend(), params_, horizon, stop)) {
+      outcome.best =
+          designers::judge(linear, backend(), params_, *problem, designers::stacked(input), stop);
     }
     if (!outcome.best)
       return designers::without_answer(std::move(outcome), "stopped before the input was judged");
@@ -65,7 +61,7 @@ class Given final : public InputDesigner {
 
 std::vector<Diagnostic> check(const DesignerContext& context, const Params& params) {
   const Matrix& input = params.matrix("input");
-  const Index inputs = context.bank[0].model.linear.inputs();
+  const Index inputs = context.bank[0].model.inputs();
   if (input.cols() != inputs || input.rows() < 2) {
     return {{"/input",
              fmt::format("is {} × {}, must have {} column{}, one per input, and two rows at least",
@@ -73,7 +69,7 @@ std::vector<Diagnostic> check(const DesignerContext& context, const Params& para
              "a row per time k = 0, 1, …, N with the inputs of that time; N is 1 at least"}};
   }
   std::vector<Diagnostic> problems = designers::check_statement(context, params);
-  if (problems.empty()) designers::check_cost(params, inputs, stacked(input), problems);
+  if (problems.empty()) designers::check_cost(params, inputs, designers::stacked(input), problems);
   return problems;
 }
 
@@ -88,7 +84,9 @@ CORDON_COMPONENT(designer, given) {
       check,
       [](const DesignerContext& context, const Params& params) {
         return std::make_unique<Given>(context, params);
-      }});
+      },
+      true,
+      true});
 }
 
 }  // namespace cordon::estimators

@@ -19,6 +19,12 @@ double Cost::at(VectorIn u) const {
   return 0;
 }
 
+Matrix by_time(VectorIn u, Index inputs) {
+  return u.reshaped(inputs, inputs > 0 ? u.size() / inputs : 0).transpose();
+}
+
+Vector stacked(const Matrix& u) { return u.transpose().reshaped(); }
+
 std::string modes_of(const SeparationProblem& problem, const PairProgram& pair) {
   const auto& names = problem.modes;
   if (static_cast<Index>(names.size()) <= pair.j)

@@ -19,6 +19,10 @@ struct Cost {
   double at(VectorIn u) const;
 };
 
+/// A stacked sequence, a row per time, and back.
+Matrix by_time(VectorIn u, Index inputs);
+Vector stacked(const Matrix& u);
+
 /// U = {c + G ξ : A ξ = b, ‖ξ‖∞ ≤ 1}: bounded, all sequences that may be applied, a fixed u_0
 /// included.
 struct InputSequences {

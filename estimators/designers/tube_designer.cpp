@@ -6,9 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "designers/successive_linearisation.hpp"
 #include "designers/watch.hpp"
 
 namespace cordon::designers {
@@ -76,15 +78,31 @@ std::string open_question(const ModeBank& bank, const InputDesign& design, doubl
   return {};
 }
 
-std::optional<SeparationProblem> problem_at(const ModeBank& bank, const SetBackend& backend,
+LinearBank::LinearBank(const ModeBank& modes) : bank(modes) {
+  for (const Mode& mode : modes.modes) models.emplace_back(mode.model);
+}
+
+LinearBank::LinearBank(const ModeBank& modes, const Matrix& u) : bank(modes) {
+  for (const Mode& mode : modes.modes) {
+    try {
+      models.push_back(model_under(mode.model, u));
+    } catch (const Error& error) {
+      if (error.code() != Errc::not_enclosed) throw;
+      throw Error(Errc::not_enclosed, fmt::format("mode \"{}\" is not enclosed under the input: {}",
+                                                  mode.name, error.what()));
+    }
+  }
+}
+
+std::optional<SeparationProblem> problem_at(const LinearBank& bank, const SetBackend& backend,
                                             const Params& params, Index horizon, const Stop& stop) {
   SeparationProblem problem;
   problem.horizon = horizon;
-  problem.inputs = bank[0].model.linear.inputs();
+  problem.inputs = bank.models[0][0].inputs();
   std::vector<OutputTube> tubes;
-  for (const Mode& mode : bank.modes) {
+  for (const TimedModel& model : bank.models) {
     if (stop()) return std::nullopt;
-    tubes.push_back(output_tube(mode.model, backend, span_from(params, horizon)));
+    tubes.push_back(output_tube(model, backend, span_from(params, horizon)));
     problem.conditions.push_back(conditions_of(tubes.back()));
   }
   for (std::size_t i = 0; i < tubes.size(); ++i) {
@@ -96,29 +114,32 @@ std::optional<SeparationProblem> problem_at(const ModeBank& bank, const SetBacke
   }
   problem.cost = cost_from(params, problem.inputs, horizon);
   problem.epsilon = params.real("epsilon");
-  for (const Mode& mode : bank.modes) problem.modes.push_back(mode.name);
+  for (const Mode& mode : bank.bank.modes) problem.modes.push_back(mode.name);
   return problem;
 }
 
-std::optional<InputDesign> judge(const ModeBank& bank, const SetBackend& backend,
+std::optional<InputDesign> judge(const LinearBank& bank, const SetBackend& backend,
                                  const Params& params, const SeparationProblem& problem, VectorIn u,
                                  const Stop& stop) {
   InputDesign design;
-  const Index inputs = problem.inputs;
-  design.u.resize(problem.horizon + 1, inputs);
-  for (Index k = 0; k <= problem.horizon; ++k)
-    design.u.row(k) = u.segment(k * inputs, inputs).transpose();
+  design.u = by_time(u, problem.inputs);
   design.cost = problem.cost.at(u);
+  const auto is_linear = [&](Index mode) { return bank.bank[mode].model.is_linear(); };
   for (const PairProgram& pair : problem.pairs) {
     if (stop()) return std::nullopt;
-    design.pairs.push_back(separation(pair, u));
+    PairSeparation found = separation(pair, u);
+    if (found.disjoint == Answer::no && !(is_linear(pair.i) && is_linear(pair.j))) {
+      found.disjoint = Answer::unknown;
+      found.why = {};
+    }
+    design.pairs.push_back(std::move(found));
   }
   for (const TubeConditions& rows : problem.conditions)
     design.empty.push_back(is_empty_under(rows, u));
-  for (const Mode& mode : bank.modes) {
+  for (const TimedModel& model : bank.models) {
     if (stop()) return std::nullopt;
     design.outputs.push_back(
-        interval_hull(output_tube(mode.model, backend, span_from(params, problem.horizon)).at(u)));
+        interval_hull(output_tube(model, backend, span_from(params, problem.horizon)).at(u)));
   }
   return design;
 }
@@ -171,6 +192,21 @@ bool is_answer(const ModeBank& bank, const Params& params, double epsilon, Desig
   return false;
 }
 
+/// An input was found, and is not shown to be one for the modes.
+DesignOutcome without_proof(DesignOutcome outcome, const std::string& why) {
+  outcome.status = DesignStatus::unknown;
+  outcome.reason =
+      "the linear models are separated by an input under which they are not shown to "
+      "hold: " +
+      why;
+  outcome.suggestion = "a larger region, or a smaller input set";
+  return outcome;
+}
+
+bool is_linear(const ModeBank& bank) {
+  return std::ranges::all_of(bank.modes, [](const Mode& mode) { return mode.model.is_linear(); });
+}
+
 /// What is told of a horizon that is not the one reported.
 HorizonTrial trial_of(const DesignOutcome& outcome) {
   HorizonTrial trial{outcome.horizon, outcome.status, outcome.reason};
@@ -187,7 +223,7 @@ std::optional<Vector> TubeDesigner::prolonged(const Matrix& u,
                                               const SeparationProblem& problem) const {
   const LineForm U = input_set_from(bank(), params_);
   Vector start = problem.cost.reference;
-  start.head(u.size()) = Matrix(u.transpose()).reshaped();
+  start.head(u.size()) = stacked(u);
   for (Index k = u.rows(); k <= problem.horizon; ++k) {
     auto next = start.segment(k * u.cols(), u.cols());
     if (contains(U, next) != Answer::yes) next = u.row(u.rows() - 1).transpose();
@@ -198,6 +234,53 @@ std::optional<Vector> TubeDesigner::prolonged(const Matrix& u,
   return shows ? std::optional<Vector>(start) : std::nullopt;
 }
 
+/// The reference where the input set has it, else the middle of the set.
+Vector TubeDesigner::first_guess(Index horizon, const InputSequences& U) const {
+  const Index inputs = bank()[0].model.inputs();
+  const LineForm set = input_set_from(bank(), params_);
+  Vector u = cost_from(params_, inputs, horizon).reference;
+  for (Index k = 0; k <= horizon; ++k) {
+    auto now = u.segment(k * inputs, inputs);
+    const bool decided = k == 0 && params_.has("first_input");
+    if (decided || contains(set, now) != Answer::yes) now = U.c.segment(k * inputs, inputs);
+  }
+  return u;
+}
+
+TubeDesigner::OneHorizon TubeDesigner::design_formulas(DesignOutcome outcome,
+                                                       const DesignOutcome* shorter,
+                                                       const Watch& watch,
+                                                       DesignControl& control) const {
+  const Index horizon = outcome.horizon;
+  const InputSequences U = inputs_from(bank(), params_, horizon);
+  Vector start = first_guess(horizon, U);
+  if (shorter && shorter->best) {
+    const Matrix& u = shorter->best->u;
+    start.head(u.size()) = stacked(u);
+  }
+  FormulaDesign found = linearise_successively(
+      {bank(), backend(), params_, horizon, U, std::move(start)},
+      [&](const SeparationProblem& problem, double seconds) {
+        SearchResult result = search(problem, seconds, control);
+        if (result.u) result.u = inside_bounds(problem.U, std::move(*result.u));
+        return result;
+      },
+      watch);
+  outcome.status = found.is_optimal ? DesignStatus::optimal
+                   : found.best     ? DesignStatus::feasible
+                                    : DesignStatus::unknown;
+  if (found.is_optimal) outcome.lower_bound = 0;
+  outcome.stopped = found.stopped;
+  outcome.reason = std::move(found.reason);
+  outcome.suggestion = std::move(found.suggestion);
+  outcome.nodes = found.nodes;
+  outcome.programs = found.programs;
+  outcome.facets = found.facets;
+  outcome.best = std::move(found.best);
+  const bool is_one = outcome.best && is_answer(bank(), params_, outcome.epsilon, outcome);
+  return {std::move(outcome), is_one};
+}
+
 TubeDesigner::OneHorizon TubeDesigner::design_at(Index horizon, const DesignOutcome* shorter,
                                                  DesignControl& control) const {
   DesignOutcome outcome;
@@ -206,8 +289,9 @@ TubeDesigner::OneHorizon TubeDesigner::design_at(Index horizon, const DesignOutc
   outcome.last_output_only = span_from(params_, horizon).last_output_only;
   outcome.admissible_set = span_from(params_, horizon).admissible_set;
   const Watch watch(control, horizon, params_.real("time_limit"));
+  if (!is_linear(bank())) return design_formulas(std::move(outcome), shorter, watch, control);
   std::optional<SeparationProblem> problem =
-      problem_at(bank(), backend(), params_, horizon, [&] { return watch.over(); });
+      problem_at(LinearBank(bank()), backend(), params_, horizon, [&] { return watch.over(); });
   if (!problem || watch.over()) {
     return {without_answer(std::move(outcome),
                            "the end came while the equations of the tubes were still being solved",
@@ -228,9 +312,15 @@ TubeDesigner::OneHorizon TubeDesigner::design_at(Index horizon, const DesignOutc
   outcome.facets = found.facets;
   if (!found.u) return {std::move(outcome), false};
   // However late it is: an input that was found is proven.
-  outcome.best =
-      judge(bank(), backend(), params_, *problem, inside_bounds(problem->U, std::move(*found.u)),
-            [&] { return control.stop(); });
+  const Vector u = inside_bounds(problem->U, std::move(*found.u));
+  std::optional<LinearBank> under;
+  try {
+    under.emplace(bank(), by_time(u, problem->inputs));
+  } catch (const Error& error) {
+    if (error.code() != Errc::not_enclosed) throw;
+    return {without_proof(std::move(outcome), error.what()), false};
+  }
+  outcome.best = judge(*under, backend(), params_, *problem, u, [&] { return control.stop(); });
   if (!outcome.best)
     return {
         without_answer(std::move(outcome), "the search was stopped before the input was judged"),

@@ -10,16 +10,32 @@
 
 namespace cordon::designers {
 
+class Watch;
+
 /// Asked between the tubes and the pairs: is there no need to go on?
 using Stop = std::function<bool()>;
 
+/// The modes of a bank as linear models: those of formulas along their trajectories under one input
+/// sequence, for which alone they hold.
+struct LinearBank {
+  const ModeBank& bank;
+  std::vector<TimedModel> models;
+
+  /// Of a bank whose modes are linear.
+  explicit LinearBank(const ModeBank& modes);
+  /// Under an input, a row each. Errc::not_enclosed where a mode is not enclosed, or not shown to
+  /// keep to the region that its model is proven in.
+  LinearBank(const ModeBank& modes, const Matrix& u);
+};
+
 /// The problem at horizon N, but for its input set; nothing if it was stopped.
-std::optional<SeparationProblem> problem_at(const ModeBank& bank, const SetBackend& backend,
+std::optional<SeparationProblem> problem_at(const LinearBank& bank, const SetBackend& backend,
                                             const Params& params, Index horizon, const Stop& stop);
 
 /// What an input sequence (stacked) does: κ and certificate of every pair, tubes that are empty,
-/// hulls of the outputs, cost. Nothing if it was stopped.
-std::optional<InputDesign> judge(const ModeBank& bank, const SetBackend& backend,
+/// hulls of the outputs, cost. Nothing if it was stopped. That tubes meet is not said of formulas,
+/// which the linear models enclose only.
+std::optional<InputDesign> judge(const LinearBank& bank, const SetBackend& backend,
                                  const Params& params, const SeparationProblem& problem, VectorIn u,
                                  const Stop& stop);
 
@@ -52,6 +68,10 @@ class TubeDesigner : public InputDesigner {
   };
   /// `shorter` (may be null): an outcome whose input, prolonged, is known.
   OneHorizon design_at(Index horizon, const DesignOutcome* shorter, DesignControl& control) const;
+  /// Of modes by formulas. `outcome` knows the horizon and what is asked for.
+  OneHorizon design_formulas(DesignOutcome outcome, const DesignOutcome* shorter,
+                             const Watch& watch, DesignControl& control) const;
+  Vector first_guess(Index horizon, const InputSequences& U) const;
   /// By the reference where the input set has it, else by the last input; nothing if a tube may be
   /// empty then.
   std::optional<Vector> prolonged(const Matrix& u, const SeparationProblem& problem) const;

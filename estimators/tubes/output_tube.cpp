@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tubes/output_tube.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "cordon/core/error.hpp"
@@ -55,55 +56,74 @@ Part mapped(MatrixIn T, const Part& part) {
 /// The tube while it is built: unknowns are counted first, so that every block has its place.
 class TubeBuilder {
  public:
-  TubeBuilder(const Model& model, const SetBackend& backend, const TubeSpan& span)
-      : m_(with_exact_effectiveness_applied(model.linear)),
-        span_(span),
-        n_(m_.states()),
-        X0_(imported(backend, model.X0)),
-        W_(imported(backend, model.W)),
-        V_(imported(backend, model.V)) {
-    if (m_.is_descriptor()) E_.emplace(m_.E);
-    if (span.admissible_set && m_.is_descriptor()) XA_ = imported(backend, *span.admissible_set);
+  TubeBuilder(const TimedModel& model, const SetBackend& backend, const TubeSpan& span)
+      : span_(span), X0_(imported(backend, model[0].X0)) {
+    for (Index k = 0; k < model.count(); ++k) {
+      times_.push_back({with_exact_effectiveness_applied(model[k].linear),
+                        imported(backend, model[k].W), imported(backend, model[k].V)});
+    }
+    const LinearModel& m = at(0).m;
+    n_ = m.states();
+    inputs_ = m.inputs();
+    outputs_ = m.outputs();
+    if (m.is_descriptor()) E_.emplace(m.E);
+    if (span.admissible_set && E_) XA_ = imported(backend, *span.admissible_set);
   }
 
   OutputTube build() {
-    const Index N = span_.horizon, inputs = m_.inputs() * (N + 1);
-    const Index first_output = span_.last_output_only ? N : 0, noises = N + 1 - first_output;
-    const Index equations = m_.is_descriptor()
-                                ? N + 1
-                                : N;  // without E the equation of k = N only tells the free x_{N+1}
+    const Index N = span_.horizon, first_output = span_.last_output_only ? N : 0;
+    const Index equations =
+        E_ ? N + 1 : N;  // without E the equation of k = N only tells the free x_{N+1}
     const Index admissible = XA_ ? N : 0;
     const LineForm none{};
     const LineForm& XA = XA_ ? *XA_ : none;
-    const Index inner = E_ && !E_->as_written ? E_->rank : 0;  // z of core z = right x⁺
-    const Index lines = X0_.lines() + equations * (W_.lines() + n_ + inner) + noises * V_.lines() +
-                        admissible * (XA.lines() + determined().rows());
-    const Index factors = X0_.generators() + equations * W_.generators() +
-                          noises * V_.generators() + admissible * XA.generators();
-    const Index rows = X0_.constraints() + equations * (W_.constraints() + n_ + inner) +
-                       noises * V_.constraints() + admissible * (XA.constraints() + n_);
-    const Index outputs = m_.outputs() * noises;
-    tube_ = {Matrix::Zero(outputs, lines),  Matrix::Zero(outputs, factors),
-             Matrix::Zero(outputs, inputs), Vector::Zero(outputs),
-             Matrix::Zero(rows, lines),     Matrix::Zero(rows, factors),
-             Matrix::Zero(rows, inputs),    Vector::Zero(rows)};
-    tube_.is_exact = !m_.unscaled;
-    tube_.c_size = Vector::Zero(outputs);
-    tube_.b_size = Vector::Zero(rows);
-
+    make_room(equations, first_output, admissible, XA);
     std::vector<Part> x{take(X0_)};
     for (Index k = 0; k < equations; ++k) {
-      const Part w = take(W_);
+      const Part w = take(at(k).W);
       x.push_back(take_free(n_));
       next_state(k, x[static_cast<std::size_t>(k)], w, x.back());
     }
     for (Index k = 1; k <= admissible; ++k) admit(x[static_cast<std::size_t>(k)], XA);
     for (Index k = first_output; k <= N; ++k)
-      output(k, (k - first_output) * m_.outputs(), x[static_cast<std::size_t>(k)]);
+      output(k, (k - first_output) * outputs_, x[static_cast<std::size_t>(k)]);
     return std::move(tube_);
   }
 
  private:
+  /// The model of one time, with its sets as the backend writes them.
+  struct Time {
+    LinearModel m;
+    LineForm W, V;
+  };
+  const Time& at(Index k) const {
+    return times_[std::min(static_cast<std::size_t>(k), times_.size() - 1)];
+  }
+
+  void make_room(Index equations, Index first_output, Index admissible, const LineForm& XA) {
+    const Index N = span_.horizon, inner = E_ && !E_->as_written ? E_->rank : 0;  // z of E = core z
+    Index lines =
+        X0_.lines() + equations * (n_ + inner) + admissible * (XA.lines() + determined().rows());
+    Index factors = X0_.generators() + admissible * XA.generators();
+    Index rows =
+        X0_.constraints() + equations * (n_ + inner) + admissible * (XA.constraints() + n_);
+    const auto count = [&](const LineForm& X) {
+      lines += X.lines();
+      factors += X.generators();
+      rows += X.constraints();
+    };
+    for (Index k = 0; k < equations; ++k) count(at(k).W);
+    for (Index k = first_output; k <= N; ++k) count(at(k).V);
+    const Index outputs = outputs_ * (N + 1 - first_output), inputs = inputs_ * (N + 1);
+    tube_ = {Matrix::Zero(outputs, lines),  Matrix::Zero(outputs, factors),
+             Matrix::Zero(outputs, inputs), Vector::Zero(outputs),
+             Matrix::Zero(rows, lines),     Matrix::Zero(rows, factors),
+             Matrix::Zero(rows, inputs),    Vector::Zero(rows)};
+    tube_.is_exact = !at(0).m.unscaled;
+    tube_.c_size = Vector::Zero(outputs);
+    tube_.b_size = Vector::Zero(rows);
+  }
+
   /// As the backend writes the set, if that is the set.
   static LineForm imported(const SetBackend& backend, const LineForm& X) {
     const Enclosure set = backend.import(X);
@@ -161,9 +181,10 @@ class TubeBuilder {
     } else {
       add(row_, E_ ? image(E_->left, next) : next);
     }
-    add(row_, image(-m_.A, x));
-    add(row_, image(-m_.Bw, w));
-    tube_.Omega.block(row_, k * m_.inputs(), n_, m_.inputs()) = m_.B;
+    const LinearModel& m = at(k).m;
+    add(row_, image(-m.A, x));
+    add(row_, image(-m.Bw, w));
+    tube_.Omega.block(row_, k * inputs_, n_, inputs_) = m.B;
     row_ += n_;
   }
 
@@ -183,7 +204,8 @@ class TubeBuilder {
   }
 
   void output(Index k, Index row, const Part& x) {
-    for (const Part& part : {image(m_.C, x), image(m_.Dv, take(V_))}) {
+    const auto& [m, W, V] = at(k);
+    for (const Part& part : {image(m.C, x), image(m.Dv, take(V))}) {
       tube_.M.block(row, part.line, part.M.rows(), part.M.cols()) += part.M;
       tube_.G.block(row, part.factor, part.G.rows(), part.G.cols()) += part.G;
       auto offset = tube_.c.segment(row, part.c.size());
@@ -191,13 +213,13 @@ class TubeBuilder {
       offset += part.c;
       tube_.c_size.segment(row, part.c.size()) += part.size;
     }
-    tube_.H.block(row, k * m_.inputs(), m_.outputs(), m_.inputs()) = m_.D;
+    tube_.H.block(row, k * inputs_, outputs_, inputs_) = m.D;
   }
 
-  LinearModel m_;
   const TubeSpan& span_;
-  Index n_;
-  LineForm X0_, W_, V_;
+  LineForm X0_;
+  std::vector<Time> times_;
+  Index n_ = 0, inputs_ = 0, outputs_ = 0;
   std::optional<LineForm> XA_;
   std::optional<DescriptorMatrix> E_;
   OutputTube tube_;
@@ -210,7 +232,7 @@ LineForm OutputTube::at(VectorIn u) const {
   return {M, G, c + linalg::product(H, u), S, A, b + linalg::product(Omega, u)};
 }
 
-OutputTube output_tube(const Model& model, const SetBackend& backend, const TubeSpan& span) {
+OutputTube output_tube(const TimedModel& model, const SetBackend& backend, const TubeSpan& span) {
   if (span.horizon < 0) throw Error(Errc::invalid, "the horizon of a tube is negative");
   return TubeBuilder(model, backend, span).build();
 }

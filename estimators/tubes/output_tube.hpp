@@ -8,6 +8,7 @@
 #include "cordon/core/line_form.hpp"
 #include "cordon/interfaces/backend.hpp"
 #include "cordon/interfaces/model.hpp"
+#include "cordon/linearisation/along_trajectories.hpp"
 
 namespace cordon::designers {
 
@@ -45,8 +46,9 @@ struct OutputTube {
 
 /// The tube with X0, W, V (and X_A) as `backend` expresses them; of a set that it can only enclose
 /// as the model has it, for of a wider tube neither that it meets another one nor κ could be said.
-/// Throws Errc::unsupported where the backend cannot even enclose.
-OutputTube output_tube(const Model& model, const SetBackend& backend, const TubeSpan& span);
+/// Throws Errc::unsupported where the backend cannot even enclose. Of a model that changes with
+/// time A, B, …, W and V are those of the time; E has to stay.
+OutputTube output_tube(const TimedModel& model, const SetBackend& backend, const TubeSpan& span);
 
 /// What rounding in the elimination of lines may have changed in a row, as a share of its terms.
 inline constexpr double row_noise = 2e-13;

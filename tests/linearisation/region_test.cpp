@@ -179,14 +179,34 @@ TEST_CASE("a bank of gains takes a region that the plant is shown never to leave
   CHECK(input.outcome.out.find("u1 may be in [0.7, 0.9]") != std::string::npos);
 }
 
+TEST_CASE("designed inputs keep to the region") {
+  const auto design = [](double reach) {
+    Json design = study();
+    design["system"]["region"]["states"] = {{"lower", {-reach}}, {"upper", {reach}}};
+    design["system"]["modes"] = Json::parse(R"([{"name": "half", "actuator": [0.5]}])");
+    design.erase("data");
+    design["pipelines"] = Json::parse(R"([{"backend": "constrained_zonotope",
+        "designer": {"type": "facets", "horizon": 3,
+                     "input_set": {"type": "box", "lower": [-2.5], "upper": [2.5]}}}])");
+    return Run(design);
+  };
+  const Run inside(design(4));
+  CAPTURE(inside.outcome.out);
+  CHECK(inside.outcome.code == 0);
+  CHECK(inside.pipeline(0)["design"]["status"] == "optimal");
+  const Run outside(design(0.9));  // X0 reaches further
+  CAPTURE(outside.outcome.out);
+  CHECK(outside.outcome.code != 0);
+  CHECK(outside.pipeline(0)["design"]["status"] == "unknown");
+  CHECK(outside.outcome.out.find("is not shown to lie in the region") != std::string::npos);
+}
+
 TEST_CASE("who cannot keep to a region refuses it, and mistakes are told at their places") {
-  Json design = study();
-  design["system"]["modes"] = Json::parse(R"([{"name": "half", "actuator": [0.5]}])");
-  design.erase("data");
-  design["pipelines"] = Json::parse(R"([{"backend": "constrained_zonotope",
-      "designer": {"type": "milp", "horizon": 3,
-                   "input_set": {"type": "box", "lower": [-1], "upper": [1]}}}])");
-  const Run refused(design);
+  Json faults = study();
+  faults["system"]["F"] = Json::parse("[[1]]");
+  faults["pipelines"] = Json::parse(R"([{"backend": "interval",
+      "diagnoser": {"type": "fault_estimation_filter"}}])");
+  const Run refused(faults, walk);
   CHECK(refused.outcome.code == 2);
   CHECK(refused.outcome.out.find("takes models that hold for all states, and the system has a "
                                  "\"region\"") != std::string::npos);

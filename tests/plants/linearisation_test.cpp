@@ -10,8 +10,8 @@
 #include <doctest/doctest.h>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/linearisation/linearise.hpp"
 #include "cordon/solvers/set_questions.hpp"
-#include "cordon/study/linearise.hpp"
 #include "cordon/study/study.hpp"
 #include "run/scratch.hpp"
 

@@ -150,3 +150,19 @@ TEST_CASE(
   CHECK(study["Wide set, input by line zonotopes"].outcome->best->separates() == Answer::yes);
   expect_diagonal(study.experiments("Wide set, input by line zonotopes", 20), 4, 20);
 }
+
+TEST_CASE("two tanks by formulas are told apart by what the pump does, and not without") {
+  const Loaded study("two_tanks");
+  const PipelineDesign& designed = study["designed"];
+  CHECK(designed.exact->separates() == Answer::yes);
+  CHECK(designed.outcome->best->cost <= 4.25);
+  const PipelineDesign& steady = study["the pump as it is"];
+  CHECK(steady.exact->separates() == Answer::unknown);
+  expect_diagonal(study.experiments("designed", 20), 4, 20);
+  std::int64_t undecided = 0;
+  for (const ExperimentRow& row : study.experiments("the pump as it is", 50)) {
+    undecided += row.undecided;
+    CHECK(row.wrong + row.unknown_fault == 0);
+  }
+  CHECK(undecided > 0);
+}

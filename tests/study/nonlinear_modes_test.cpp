@@ -107,6 +107,31 @@ TEST_CASE("whenever which mode begins, the truth is not excluded") {
   }
 }
 
+TEST_CASE("tubes of formulas leave the true mode and exclude the others") {
+  for (const char* mode : {"healthy", "leak_1", "leak_2", "blocked"}) {
+    CAPTURE(std::string(mode));
+    Json study = tanks();
+    if (std::string(mode) != "healthy")
+      study["data"]["simulate"]["faults"] = {{{"mode", mode}, {"from", 0}}};
+    study["data"]["simulate"]["steps"] = 12;
+    study["data"]["simulate"]["noise"] = "vertex";
+    study["data"]["simulate"]["seeds"] = 20;
+    study["data"]["simulate"]["x0"] =
+        Json::parse(R"({"type": "box", "lower": [3.5, 4.5], "upper": [4.5, 5.5]})");
+    study["pipelines"] = Json::parse(R"([{"name": "tubes", "backend": "zonotope",
+        "diagnoser": {"type": "tube_membership", "horizon": 12}}])");
+    const Run run(study);
+    CAPTURE(run.outcome.out);
+    REQUIRE(run.outcome.code == 0);
+    CHECK(run.outcome.out.find("True mode excluded: never") != std::string::npos);
+    for (const char* other : {"healthy", "leak_1", "leak_2", "blocked"}) {
+      const int at = excluded_at(run.pipeline(0), other);
+      CHECK((std::string(other) == mode) == (at < 0));
+      CHECK(at <= 9);
+    }
+  }
+}
+
 TEST_CASE("resolved studies with modes by formulas say the same") {
   Json study = with_banks(tanks());
   study["data"]["simulate"]["faults"] = {{{"mode", "leak_2"}, {"from", 10}}};

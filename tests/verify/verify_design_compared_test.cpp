@@ -96,7 +96,8 @@ TEST_CASE("random modes: the same answers and distances as by the tubes themselv
         RC_ASSERT(disjoint((1 + pair.kappa_lower) * (1 + 1e-7)) != Answer::yes);
       }
     }
-    const std::vector<const Model*> both{&bank[0].model, &bank[1].model};
+    const TimedModel first(bank[0].model), second(bank[1].model);
+    const std::vector<const TimedModel*> both{&first, &second};
     const std::optional<LineForm> none;
     const LineForm rows = verification::common_runs(both, {u, false, none});
     if (rows.lines() + rows.generators() <= exact::max_columns &&

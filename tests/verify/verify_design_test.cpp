@@ -146,7 +146,8 @@ TEST_CASE("what does not fit is refused") {
 TEST_CASE("what is too large for the simplex method is decided by restored proofs") {
   const ModeBank bank = signs();
   const Matrix apart = Matrix::Constant(30, 1, 1.5), together = Matrix::Constant(30, 1, .5);
-  const std::vector<const Model*> both{&bank[0].model, &bank[1].model};
+  const TimedModel first(bank[0].model), second(bank[1].model);
+  const std::vector<const TimedModel*> both{&first, &second};
   const std::optional<LineForm> none;
   const LineForm rows = verification::common_runs(both, {apart, false, none});
   const auto m = static_cast<double>(rows.constraints());

@@ -289,6 +289,38 @@ TEST_CASE("modes by formulas, parameters by bounds and samples with gaps") {
   CHECK(narrow.complains("where the state is in mode \"leak\" is not proven again: coordinate 1"));
 }
 
+TEST_CASE("what tubes exclude is proven again") {
+  Json linear = linear_study(), formulas{{"cordon", 1}};
+  linear["data"]["simulate"]["faults"][0]["from"] = 0;
+  linear["pipelines"][0]["diagnoser"] = {{"type", "tube_membership"}, {"horizon", 15}};
+  formulas["system"] = Json::parse(R"({"type": "nonlinear", "states": ["h"], "inputs": ["q"],
+    "disturbances": ["w"], "noises": ["v"], "parameters": {"a": 0.3},
+    "f": ["h + q - a*sqrt(h) + w"], "g": ["h + v"], "X0": {"type": "box", "lower": [3], "upper": [5]},
+    "W": {"type": "box", "lower": [-0.01], "upper": [0.01]},
+    "V": {"type": "box", "lower": [-0.1], "upper": [0.1]},
+    "modes": [{"name": "leak", "parameters": {"a": 0.36}}]})");
+  formulas["data"]["simulate"] = Json::parse(R"({"steps": 15, "seed": 3, "x0": [4],
+    "input": [{"type": "constant", "offset": 0.6}], "faults": [{"mode": "leak", "from": 0}]})");
+  formulas["pipelines"] = Json::parse(R"([{"name": "tubes", "backend": "interval",
+    "diagnoser": {"type": "tube_membership", "horizon": 15}}])");
+  for (const Json& study : {linear, formulas}) {
+    const BankRun run(study);
+    const Outcome outcome = run.verify();
+    CAPTURE(outcome.out + outcome.err);
+    CHECK(outcome.code == unharmed);
+    CHECK(found_of(outcome)["exclusions"] >= 1);
+    const Outcome false_one = run.verify_after([](Json& pipeline) {
+      for (Json& step : pipeline["steps"])
+        for (Json& mode : step["modes"])
+          if (mode["candidate"] == true && step["k"] == 15) {
+            mode["candidate"] = false;
+            mode["consistent"] = "no";
+          }
+    });
+    CHECK(false_one.code != unharmed);
+  }
+}
+
 TEST_CASE("a bank whose exclusions rest on bounds of errors is not checked") {
   Json study = linear_study();
   study["system"]["modes"].erase(1);

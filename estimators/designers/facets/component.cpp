@@ -48,7 +48,9 @@ CORDON_COMPONENT(designer, facets) {
                     designers::check_search,
                     [](const DesignerContext& context, const Params& params) {
                       return std::make_unique<Facets>(context, params);
-                    }});
+                    },
+                    true,
+                    true});
 }
 
 }  // namespace cordon::estimators

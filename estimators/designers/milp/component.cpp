@@ -47,7 +47,9 @@ CORDON_COMPONENT(designer, milp) {
       designers::check_search,
       [](const DesignerContext& context, const Params& params) {
         return std::make_unique<Milp>(context, params);
-      }});
+      },
+      true,
+      true});
 }
 
 }  // namespace cordon::estimators

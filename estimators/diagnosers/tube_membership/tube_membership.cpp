@@ -7,6 +7,10 @@
 // disjoint at the horizon N, at most one mode is left at k = N, whatever the disturbances are
 // [Rego2025, sec. 5] [Scott2014]; most often one is left before.
 //
+// Formulas are enclosed by linear models along their trajectories under the inputs so far, so that
+// exclusions hold for them; a mode that cannot be enclosed, or is not shown to keep to the region
+// that its linear model is proven in, stays possible.
+//
 // Every mode is a candidate at the first sample, and the experiment has one mode throughout: an
 // excluded mode stays excluded, and there is no reset. After N the decision stands.
 //
@@ -14,6 +18,8 @@
 // those of its outputs, as `contains` does: multipliers of rows where the mode is excluded, (δ, ξ)
 // where it is not.
 #include "components.hpp"
+#include "cordon/core/error.hpp"
+#include "cordon/interfaces/nonlinear_model.hpp"
 #include "designers/designer_parameters.hpp"
 #include "diagnosers/tube_membership/membership.hpp"
 
@@ -28,14 +34,28 @@ class TubeMembership final : public Diagnoser {
     if (params.has("admissible_set")) admissible_ = params.set_form("admissible_set");
   }
 
+  std::optional<DiagnosisAssumptions> assumptions() const override {
+    DiagnosisAssumptions assumed;
+    for (const Mode& mode : bank().modes)
+      assumed.modes.push_back({mode.model.X0, {}, admissible_of(mode.model)});
+    return assumed;
+  }
+
  private:
+  std::optional<LineForm> admissible_of(const Model& model) const {
+    if (model.linear.is_descriptor()) return admissible_;
+    return model.nonlinear ? model.nonlinear->admissible : std::nullopt;
+  }
+
   void do_start() override {
     candidate_.assign(static_cast<std::size_t>(bank().size()), true);
     u_ = y_ = Vector(0);
+    lost_.assign(candidate_.size(), "");
+    along_.clear();
   }
 
   Diagnosis do_step(const Sample* before, const Sample& now) override {
-    if (!before) since_ = now.k;
+    if (!before) begin(now.k);
     Diagnosis result;
     result.k = now.k;
     result.since = since_;
@@ -44,6 +64,7 @@ class TubeMembership final : public Diagnoser {
     Index left = 0;
     for (std::size_t j = 0; j < candidate_.size(); ++j) {
       result.modes[j].candidate = candidate_[j];
+      if (candidate_[j]) result.modes[j].left_open = lost_[j];
       if (!candidate_[j]) continue;
       ++left;
       result.mode = static_cast<Index>(j);
@@ -65,18 +86,45 @@ class TubeMembership final : public Diagnoser {
     std::vector<bool> candidate = candidate_;
     for (std::size_t j = 0; j < candidate.size(); ++j) {
       if (!candidate[j]) continue;
-      const designers::OutputTube tube = designers::output_tube(
-          bank().modes[j].model, backend(), {now.k - since_, false, admissible_});
+      const std::optional<TimedModel> model = model_of(j, now, u);
+      if (!model) continue;
+      const designers::OutputTube tube =
+          designers::output_tube(*model, backend(), {now.k - since_, false, admissible_});
       Certificate why;
       const Answer answer = diagnosers::membership(tube, u, y, &why);
       candidate[j] = answer != Answer::no;
-      if (answer == Answer::unknown || (answer == Answer::yes && admissible_)) continue;
+      const bool enclosed = admissible_ || !bank().modes[j].model.is_linear();
+      if (answer == Answer::unknown || (answer == Answer::yes && enclosed)) continue;
       modes[j].consistent = answer;
       modes[j].why = std::move(why);
     }
     u_ = u;
     y_ = y;
     candidate_ = std::move(candidate);
+  }
+
+  void begin(Index k) {
+    since_ = k;
+    for (const Mode& mode : bank().modes)
+      along_.push_back(mode.model.is_linear()
+                           ? std::nullopt
+                           : std::optional(AlongTrajectories(mode.model, since_)));
+  }
+
+  /// The mode's model under the inputs up to now; nothing, with the reason, where it is not shown
+  /// to hold.
+  std::optional<TimedModel> model_of(std::size_t j, const Sample& now, const Vector& u) {
+    if (!lost_[j].empty()) return {};
+    try {
+      if (!along_[j])
+        return model_under(bank().modes[j].model, designers::by_time(u, now.u.size()));
+      along_[j]->append(now.u);
+      return TimedModel(along_[j]->models());
+    } catch (const Error& error) {
+      if (error.code() != Errc::not_enclosed) throw;
+      lost_[j] = error.what();
+      return {};
+    }
   }
 
   static Vector joined(const Vector& all, const Vector& next) {
@@ -88,7 +136,9 @@ class TubeMembership final : public Diagnoser {
   Index horizon_;
   std::optional<LineForm> admissible_;
   std::vector<bool> candidate_;
-  Vector u_, y_;  ///< since the first sample
+  std::vector<std::optional<AlongTrajectories>> along_;  ///< by mode, of those by formulas
+  std::vector<std::string> lost_;  ///< why a mode cannot be excluded any more; "": it can
+  Vector u_, y_;                   ///< since the first sample
   Index since_ = 0;
 };
 
@@ -126,7 +176,11 @@ CORDON_COMPONENT(diagnoser, tube_membership) {
       check_tube_membership,
       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
         return std::make_unique<TubeMembership>(context, params);
-      }});
+      },
+      false,
+      true,
+      true,
+      true});
 }
 
 }  // namespace cordon::estimators

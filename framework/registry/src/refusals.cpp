@@ -78,8 +78,8 @@ std::vector<Diagnostic> ObserverEntry::refusals(const ObserverContext& context,
 std::vector<Diagnostic> DesignerEntry::refusals(const DesignerContext& context,
                                                 const Registry&) const {
   const ModeBank& bank = context.bank;
-  if (!is_linear(bank)) return {for_linear_models(info.name, "")};
-  if (has_region(bank)) return {for_all_states(info.name, "")};
+  if (!takes_nonlinear && !is_linear(bank)) return {for_linear_models(info.name, "")};
+  if (!takes_regions && has_region(bank)) return {for_all_states(info.name, "")};
   std::vector<Diagnostic> problems;
   for (const Mode& mode : bank.modes) {
     if (!mode.model.linear.is_uncertain() && !mode.model.linear.has_ranges()) continue;

@@ -71,16 +71,18 @@ class Scaled {
   const LinearModel::Unscaled* unscaled_;
 };
 
-void add_run(Equations& rows, const Model& model, const Shared& shared,
+void add_run(Equations& rows, const TimedModel& models, const Shared& shared,
              const std::optional<LineForm>& admissible_set) {
-  const LinearModel& m = model.linear;
-  const Scaled scaled(m);
-  const Index n = m.states(), last = static_cast<Index>(shared.u.size()) - 1;
-  const DescriptorMatrix E(m.is_descriptor() ? m.E : identity(n));
+  const LinearModel& first = models[0].linear;
+  const Index n = first.states(), last = static_cast<Index>(shared.u.size()) - 1;
+  const DescriptorMatrix E(first.is_descriptor() ? first.E : identity(n));
   const Matrix& determined = E.as_written ? E.left : E.right;  // its rows span the range of Eᵀ
-  Equations::Line x = rows.element(model.X0);
+  Equations::Line x = rows.element(models[0].X0);
   for (Index k = 0; k <= last; ++k) {
     const auto at = static_cast<std::size_t>(k);
+    const Model& model = models[k];
+    const LinearModel& m = model.linear;
+    const Scaled scaled(m);
     if (k > 0 && m.is_descriptor() && admissible_set) {
       const Equations::Line a = rows.element(*admissible_set),
                             lambda = rows.line(determined.rows());
@@ -139,23 +141,23 @@ std::optional<double> proven_kappa(const rational::System& system, VectorIn y) {
 
 }  // namespace
 
-LineForm common_runs(std::span<const Model* const> models, const Experiment& experiment) {
+LineForm common_runs(std::span<const TimedModel* const> models, const Experiment& experiment) {
   Equations rows;
   Shared shared;
-  const Index outputs = models.size() > 1 ? models[0]->linear.outputs() : 0,
+  const Index outputs = models.size() > 1 ? (*models[0])[0].linear.outputs() : 0,
               last = experiment.u.rows() - 1;
   for (Index k = 0; k <= last; ++k) {
     shared.u.push_back(rows.constant(experiment.u.row(k).transpose()));
     shared.y.push_back(rows.line(k == last || !experiment.last_output_only ? outputs : 0));
   }
-  for (const Model* model : models) add_run(rows, *model, shared, experiment.admissible_set);
+  for (const TimedModel* model : models) add_run(rows, *model, shared, experiment.admissible_set);
   return rows.project(rows.line(0));
 }
 
-LineForm output_tube(const Model& model, const Experiment& experiment) {
+LineForm output_tube(const TimedModel& model, const Experiment& experiment) {
   Equations rows;
   Shared shared;
-  const Index outputs = model.linear.outputs(), last = experiment.u.rows() - 1;
+  const Index outputs = model[0].linear.outputs(), last = experiment.u.rows() - 1;
   const Equations::Line all =
       rows.line(experiment.last_output_only ? outputs : (last + 1) * outputs);
   Index first = all.first;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
+#include <initializer_list>
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/tolerances.hpp"
+#include "cordon/linearisation/along_trajectories.hpp"
 #include "cordon/study/design.hpp"
 #include "study/checks/common_runs.hpp"
 
@@ -23,15 +24,15 @@ void check(const ModeBank& bank, const DesignOutcome& outcome) {
   if (!u.allFinite())
     throw Error(Errc::not_finite, "verify_design: the input has a NaN or infinite entry");
   for (const Mode& mode : bank.modes) {
-    const LinearModel& m = mode.model.linear;
-    if (u.rows() < 1 || u.cols() != m.inputs() || m.outputs() != bank[0].model.linear.outputs()) {
+    const Model& m = mode.model;
+    if (u.rows() < 1 || u.cols() != m.inputs() || m.outputs() != bank[0].model.outputs()) {
       throw Error(Errc::dimension, "verify_design: the input does not fit the modes");
     }
     if (outcome.admissible_set && outcome.admissible_set->dim() != m.states()) {
       throw Error(Errc::dimension,
                   "verify_design: the admissible set has another dimension than the state");
     }
-    if (m.has_ranges() || m.is_uncertain()) {
+    if (m.linear.has_ranges() || m.linear.is_uncertain()) {
       throw Error(Errc::unsupported,
                   "verify_design: mode \"" + mode.name + "\" is known by ranges only");
     }
@@ -53,25 +54,57 @@ Answer ExactSeparation::separates() const {
   return all_run && !any_disjoint(Answer::unknown) ? Answer::yes : Answer::unknown;
 }
 
+namespace {
+
+/// The modes as linear models under the input; a reason in place of those that are not enclosed.
+struct LinearBank {
+  std::vector<std::optional<TimedModel>> models;
+  std::vector<std::string> reasons;
+
+  LinearBank(const ModeBank& bank, const Matrix& u) {
+    for (const Mode& mode : bank.modes) {
+      models.emplace_back();
+      reasons.emplace_back();
+      try {
+        models.back() = model_under(mode.model, u);
+      } catch (const Error& error) {
+        if (error.code() != Errc::not_enclosed) throw;
+        reasons.back() = "mode \"" + mode.name + "\" is not enclosed: " + error.what();
+      }
+    }
+  }
+};
+
+}  // namespace
+
 ExactSeparation verify_design(const ModeBank& bank, const DesignOutcome& outcome,
                               const std::atomic<bool>* stop, bool bounds) {
   check(bank, outcome);
   const Clock::time_point begin = Clock::now();
   const Experiment experiment{outcome.best->u, outcome.last_output_only, outcome.admissible_set};
-  const auto answer = [&](std::span<const Model* const> models, double reach = 1) {
+  const LinearBank linear(bank, outcome.best->u);
+  const auto answer = [&](std::initializer_list<Index> modes, double reach = 1) {
+    std::vector<const TimedModel*> models;
+    bool exact = true;
+    for (const Index mode : modes) {
+      const auto at = as_size(mode);
+      if (!linear.models[at]) return ExactEmptiness{Answer::unknown, 0, linear.reasons[at]};
+      models.push_back(&*linear.models[at]);
+      exact = exact && bank[mode].model.is_linear();
+    }
     if (stop && stop->load()) return ExactEmptiness{Answer::unknown, 0, "interrupted"};
     const LineForm rows = verification::common_runs(models, experiment);
-    return verification::exact_emptiness(reach == 1 ? rows : verification::with_reach(rows, reach));
+    ExactEmptiness found =
+        verification::exact_emptiness(reach == 1 ? rows : verification::with_reach(rows, reach));
+    if (found.empty == Answer::no && models.size() > 1 && !exact)
+      found = {Answer::unknown, 0, "what the formulas leave out is enclosed, and that meets"};
+    return found;
   };
   ExactSeparation found;
-  for (Index i = 0; i < bank.size(); ++i) {
-    const Model* const one = &bank[i].model;
-    found.empty.push_back(answer({&one, 1}).empty);
-  }
+  for (Index i = 0; i < bank.size(); ++i) found.empty.push_back(answer({i}).empty);
   for (Index i = 0; i < bank.size(); ++i) {
     for (Index j = i + 1; j < bank.size(); ++j) {
-      const std::array<const Model*, 2> both{&bank[i].model, &bank[j].model};
-      ExactEmptiness pair = answer(both);
+      ExactEmptiness pair = answer({i, j});
       found.pairs.push_back({i, j, pair.empty, pair.kappa_lower, std::move(pair.reason)});
       if (!bounds || pair.empty != Answer::no || found.pairs.size() > outcome.best->pairs.size())
         continue;
@@ -81,7 +114,7 @@ ExactSeparation verify_design(const ModeBank& bank, const DesignOutcome& outcome
       if (!(reach > 0))
         within = Answer::no;
       else if (reach < 1)
-        within = negate(answer(both, reach).empty);
+        within = negate(answer({i, j}, reach).empty);
     }
   }
   found.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();

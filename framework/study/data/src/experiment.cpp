@@ -2,7 +2,9 @@
 #include "study/data/experiment.hpp"
 
 #include "cordon/core/error.hpp"
+#include "cordon/interfaces/nonlinear_model.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "study/data/formula_source.hpp"
 #include "study/data/simulate.hpp"
 
 namespace cordon::detail {
@@ -38,7 +40,14 @@ class Experiment final : public DataSource {
       : name_(mode.name), index_(index) {
     own_start_ = !spec.x0 && !spec.x0_set;
     if (own_start_ && is_bounded(mode.model.X0) == Answer::yes) spec.x0_set = mode.model.X0;
-    placed([&] { source_.emplace(mode.model, spec, study.file.string()); });
+    if (!own_start_) take_parameters(mode.model, spec);
+    placed([&] {
+      if (mode.model.is_linear()) {
+        source_ = std::make_unique<SimulatedSource>(mode.model, spec, study.file.string());
+      } else {
+        source_ = std::make_unique<FormulaSource>(mode.model, spec, study.file.string(), false);
+      }
+    });
   }
 
   std::optional<Record> next() override {
@@ -50,6 +59,19 @@ class Experiment final : public DataSource {
   std::optional<std::int64_t> size() const override { return source_->size(); }
 
  private:
+  /// The start that a study gives holds for all modes; parameters that are states are the mode's.
+  static void take_parameters(const Model& model, SimulateSpec& spec) {
+    const Index count = model.nonlinear ? model.nonlinear->parameters : 0;
+    if (count == 0) return;
+    const LineForm& X0 = model.X0;  // with the box of the parameters, in generators of their own
+    if (spec.x0) spec.x0->tail(count) = X0.c.tail(count);
+    if (!spec.x0_set) return;
+    const Index others = X0.dim() - count;
+    spec.x0_set = cartesian_product(
+        affine_map(*spec.x0_set, Matrix::Identity(others, X0.dim()), Vector::Zero(others)),
+        make_zonotope(X0.c.tail(count), X0.G.bottomRows(count)));
+  }
+
   /// Problems of the simulation are problems of the mode, but for those of a start that the study
   /// gives.
   template <class Work>
@@ -71,7 +93,7 @@ class Experiment final : public DataSource {
   std::string name_;
   Index index_;
   bool own_start_ = false;  ///< in the X0 of the mode
-  std::optional<SimulatedSource> source_;
+  std::unique_ptr<DataSource> source_;
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/core/error.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
-#include "cordon/study/linearise.hpp"
+#include "cordon/study/region.hpp"
 #include "study/reading/read_sets.hpp"
 
 namespace cordon {

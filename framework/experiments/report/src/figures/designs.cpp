@@ -148,14 +148,16 @@ std::vector<LineForm> exact_tubes(const Design& design, const std::vector<const 
   if (design.u.rows() == 0 || bank.size() != design.modes.size()) return tubes;
   for (const Model* model : bank) {
     const LinearModel& m = model->linear;
-    const bool fits = design.u.cols() == m.inputs() && m.outputs() == bank[0]->linear.outputs() &&
-                      (!design.admissible_set || design.admissible_set->dim() == m.states());
+    const bool fits = design.u.cols() == model->inputs() &&
+                      model->outputs() == bank[0]->outputs() &&
+                      (!design.admissible_set || design.admissible_set->dim() == model->states());
     if (!fits || m.has_ranges() || m.is_uncertain() ||
-        design.u.rows() * (m.outputs() + m.states()) > most_numbers)
+        design.u.rows() * (model->outputs() + model->states()) > most_numbers)
       return {};
     try {
-      tubes.push_back(eliminate_lines(verification::output_tube(
-          *model, {design.u, design.last_output_only, design.admissible_set})));
+      tubes.push_back(eliminate_lines(
+          verification::output_tube(model_under(*model, design.u),
+                                    {design.u, design.last_output_only, design.admissible_set})));
     } catch (const Error&) {
       return {};
     }

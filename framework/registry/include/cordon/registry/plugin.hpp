@@ -187,6 +187,10 @@ struct DesignerEntry {
   std::function<std::vector<Diagnostic>(const DesignerContext&, const Params&)> check;
   std::function<std::unique_ptr<InputDesigner>(const DesignerContext&, const Params&)> create;
 
+  /// Its answers hold for models by formulas, and for linear ones that are proven in a region only;
+  /// refused otherwise.
+  bool takes_nonlinear = false, takes_regions = false;
+
   /// Banks with fewer than two modes, ranges of effectiveness or interval matrices.
   std::vector<Diagnostic> refusals(const DesignerContext& context, const Registry& registry) const;
 };

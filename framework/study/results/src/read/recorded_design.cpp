@@ -125,7 +125,7 @@ std::optional<DesignOutcome> read_design(const Cursor& at, const SystemPart& sys
     expect_nothing_said(at);
     return std::nullopt;
   }
-  const LinearModel& m = system.model.linear;
+  const Model& m = system.model;
   DesignOutcome outcome;
   auto inputs = read_matrix(*u);
   if (inputs && (inputs->rows() == 0 || inputs->cols() != m.inputs())) {

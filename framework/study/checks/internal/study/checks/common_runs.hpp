@@ -8,7 +8,7 @@
 #include <string>
 
 #include "cordon/core/answer.hpp"
-#include "cordon/interfaces/model.hpp"
+#include "cordon/linearisation/along_trajectories.hpp"
 
 namespace cordon::verification {
 
@@ -23,17 +23,17 @@ struct Experiment {
 /// The rows that the runs of all models satisfy at once: for k = 0 … N
 ///   E x_{k+1} = A x_k + B u_k + Bw w_k,   y_k = C x_k + D u_k + Dv v_k,   x_0 ∈ X0, w_k ∈ W, v_k ∈
 ///   V
-/// of each, with the same u_k and, where outputs count, the same y_k. Without E the equation of k =
-/// N says nothing and is left out. With an admissible set X_A also x_k = a + Eᵀλ, a ∈ X_A, for k =
-/// 1 … N: the part of x_k that E does not determine is that of a. A set of dimension 0, empty if
-/// and only if the models' outputs differ; of one model, if and only if its tube is empty. Every
-/// entry is a number of the models; effectiveness that is known exactly multiplies in rows of its
-/// own.
-LineForm common_runs(std::span<const Model* const> models, const Experiment& experiment);
+/// of each, the matrices and sets those of time k, with the same u_k and, where outputs count, the
+/// same y_k. Without E the equation of k = N says nothing and is left out. With an admissible set
+/// X_A also x_k = a + Eᵀλ, a ∈ X_A, for k = 1 … N: the part of x_k that E does not determine is
+/// that of a. A set of dimension 0, empty if and only if the models' outputs differ; of one model,
+/// if and only if its tube is empty. Every entry is a number of the models; effectiveness that is
+/// known exactly multiplies in rows of its own.
+LineForm common_runs(std::span<const TimedModel* const> models, const Experiment& experiment);
 
 /// The outputs of all times that count, one below the other, which a model can show under the
 /// inputs, by the same rows.
-LineForm output_tube(const Model& model, const Experiment& experiment);
+LineForm output_tube(const TimedModel& model, const Experiment& experiment);
 
 /// Is the set of such rows empty? `yes` by a Farkas vector y with bᵀy > ‖Aᵀy‖₁, `no` by a solution,
 /// both exact. If `yes`, it is empty for all ‖ξ‖∞ < 1 + κ too, with `kappa_lower` ≤ κ, rounded

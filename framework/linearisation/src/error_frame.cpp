@@ -11,14 +11,13 @@ namespace cordon {
 
 namespace {
 
-constexpr Index points = 1000;
 constexpr double worth_it = 0.5;  ///< of the volume
 
 double width(const Eigen::RowVectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
 
 /// A column for each point at which all rows are defined.
 Matrix errors_at_points(formulas::Evaluator& evaluator, MatrixIn slopes,
-                        std::span<const Interval> box) {
+                        std::span<const Interval> box, Index points) {
   std::mt19937_64 random(1);
   Matrix errors(slopes.rows(), points);
   Index count = 0;
@@ -57,10 +56,10 @@ Vector ErrorFrame::column(Index i) const {
 }
 
 ErrorFrame choose_error_frame(formulas::Evaluator& evaluator, MatrixIn slopes,
-                              std::span<const Interval> box) {
+                              std::span<const Interval> box, Index points) {
   const Index rows = slopes.rows();
   ErrorFrame best{-1, Vector::Zero(rows)};
-  const Matrix errors = errors_at_points(evaluator, slopes, box);
+  const Matrix errors = errors_at_points(evaluator, slopes, box, points);
   if (errors.cols() < 2) return best;
   double least = worth_it;
   for (Index main = 0; main < rows; ++main) {

@@ -21,9 +21,9 @@ struct ErrorFrame {
 };
 
 /// The errors F(z) - slopes z of all rows follow one of them where the same nonlinear term stands
-/// in several rows. By a thousand points of the box the frame is chosen whose box is smallest; one
+/// in several rows. By `points` of the box the frame is chosen whose box is smallest; one
 /// with a main row is worth it from half of the volume on. O(rows² points).
 ErrorFrame choose_error_frame(formulas::Evaluator& evaluator, MatrixIn slopes,
-                              std::span<const Interval> box);
+                              std::span<const Interval> box, Index points);
 
 }  // namespace cordon

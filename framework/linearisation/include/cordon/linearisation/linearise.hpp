@@ -2,7 +2,6 @@
 // Linear models that are proven to enclose formulas on a region.
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "cordon/core/interval.hpp"
@@ -43,10 +42,5 @@ struct Linearised {
 /// example.
 Linearised linearise(const Model& model, const Box& states, const Box& inputs,
                      const LinearModel* given = nullptr);
-
-/// {"states": {"lower": [...], "upper": [...]}, "inputs": {...}} from a JSON file: bounds of the
-/// states and inputs of a system by formulas, without those of its parameters that are states.
-/// Throws InputError with every problem.
-ValidRegion read_region(const std::filesystem::path& file, const Model& model);
 
 }  // namespace cordon
