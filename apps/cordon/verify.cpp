@@ -100,6 +100,11 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
           fmt::format("{} exclusions of modes and {} boxes of the state of {} are proven again\n",
                       p.exclusions, p.states, p.name);
     }
+    if (p.from_told_sets) {
+      passed_over += fmt::format(
+          "not re-checked: that the sets from which the modes of {} begin anew hold the state\n",
+          p.name);
+    }
     if (p.exact_claims_unproven > 0) {
       passed_over += fmt::format(
           "not proven: {} claims of \"exact\" of {}, held against directions only, which can "
@@ -163,6 +168,7 @@ std::string report_json(const VerifyOutcome& outcome) {
                                    {"proofs", p.proofs},
                                    {"exclusions", p.exclusions},
                                    {"states", p.states},
+                                   {"from_told_sets", p.from_told_sets},
                                    {"exact_claims", p.exact_claims},
                                    {"exact_claims_unproven", p.exact_claims_unproven},
                                    {"undecided", p.undecided},

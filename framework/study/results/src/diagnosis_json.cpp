@@ -170,6 +170,11 @@ void write(JsonWriter& json, const Diagnosis& diagnosis, const std::optional<Ind
   json.key("modes").begin_array();
   for (const ModeEvidence& evidence : diagnosis.modes) write(json, evidence);
   json.end_array();
+  if (!diagnosis.restarts.empty()) {
+    json.key("restarts").begin_array();
+    for (const LineForm& set : diagnosis.restarts) write(json, set);
+    json.end_array();
+  }
   if (!faults.empty()) {
     json.key("faults").begin_array();
     for (const JudgedBound& judged : faults) write(json, judged);

@@ -116,7 +116,7 @@ class DesignRun final : public PipelineRun {
         check_->step(*record);
         last = diagnoser_->step(record->sample);
         check_fits(*last, bank_, found_.diagnoser);
-        if (last->reset) check_->restarted();
+        if (last->reset && last->restarts.empty()) check_->restarted();
         shown.row(record->sample.k) = record->sample.y.transpose();
         score.step(mode_, *last);
         step_us_.add(diagnoser_->step_us());

@@ -92,7 +92,7 @@ class DiagnosisRun final : public PipelineRun {
     });
     if (failed()) return;
     if (found_.steps == 0 && record.mode) found_.truth_known = true;
-    if (diagnosis->reset) check_->restarted();
+    if (diagnosis->reset && diagnosis->restarts.empty()) check_->restarted();
     score_->step(record.mode, *diagnosis);
     if (Results* const results = writer())
       results->diagnosis({*diagnosis, record.mode, faults, diagnoser_->step_us()});

@@ -55,10 +55,10 @@ class DiagnosisCheck {
         violated(i, fmt::format("tells of k = {}, which data.csv does not have there", step.k));
         return violation_;
       }
-      if (i == 0) begin(step.k, true);
+      if (i == 0) begin(step.k, nullptr);
       take(record->sample);
       if (step.reset) {
-        begin(step.k, false);
+        begin(step.k, &step);
         take_alone(record->sample);
       }
       ++found_.steps;
@@ -158,27 +158,29 @@ class DiagnosisCheck {
   struct Followed {
     Index mode;
     const Claims* claims;
+    const LineForm* start;
     ModeTrajectories trajectories;
     std::optional<ExactTrajectories> exact;  ///< once asked for
   };
 
-  void begin(Index since, bool at_first) {
+  /// At the first sample, or at a reset.
+  void begin(Index since, const Step* reset) {
     followed_.clear();
     for (const auto& [j, claims] : claims_[since]) {
-      if (!claims.any()) continue;
       const ModeAssumptions& assumed = assumed_.modes[as_size(j)];
-      if (!at_first && !assumed.restart_set) continue;
-      at_first_ = at_first;
-      followed_.push_back(
-          {j,
-           &claims,
-           ModeTrajectories(run_.bank[j].model, start_of(assumed), assumed.admissible_set),
-           {}});
+      const bool told = reset && !reset->restarts.empty();
+      const LineForm* const start = !reset                ? &assumed.initial_set
+                                    : told                ? &reset->restarts[as_size(j)]
+                                    : assumed.restart_set ? &*assumed.restart_set
+                                                          : nullptr;
+      if (!claims.any() || !start) continue;
+      followed_.push_back({j,
+                           &claims,
+                           start,
+                           ModeTrajectories(run_.bank[j].model, *start, assumed.admissible_set),
+                           {}});
+      if (told) found_.from_told_sets = true;
     }
-  }
-
-  const LineForm& start_of(const ModeAssumptions& assumed) const {
-    return at_first_ ? assumed.initial_set : *assumed.restart_set;
   }
 
   void take_alone(const Sample& now) {
@@ -218,15 +220,15 @@ class DiagnosisCheck {
   ExactTrajectories& exact(Followed& one) {
     const ModeAssumptions& assumed = assumed_.modes[as_size(one.mode)];
     if (!one.exact)
-      one.exact.emplace(run_.bank[one.mode].model, start_of(assumed), assumed.admissible_set);
+      one.exact.emplace(run_.bank[one.mode].model, *one.start, assumed.admissible_set);
     return *one.exact;
   }
 
   /// Within this of the bound is as told: claims and proofs are rounded.
   static double margin(const Box& hull, Index i, double bound) {
-    constexpr double share = 1e-9;
+    constexpr double share = 1e-9, tiny = 1e-300;  // the latter of bounds that are 0
     const double width = hull.upper[i] - hull.lower[i];
-    return share * (std::abs(bound) + (std::isfinite(width) ? width : 0));
+    return tiny + share * (std::abs(bound) + (std::isfinite(width) ? width : 0));
   }
 
   void prove_estimate(Followed& one, const Estimate& estimate) {
@@ -268,7 +270,6 @@ class DiagnosisCheck {
   VerifiedPipeline& found_;
   std::map<Index, std::map<Index, Claims>> claims_;  ///< by `since`, by mode
   std::vector<Followed> followed_;
-  bool at_first_ = true;  ///< they begin at the first sample, not at a reset
   std::optional<Violation> violation_;
 };
 

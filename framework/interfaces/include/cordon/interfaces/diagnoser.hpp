@@ -59,6 +59,9 @@ struct Diagnosis {
                                    ///< 0 excludes every mode
   std::optional<Enclosure>
       estimate;  ///< `monitoring`: contains the state as long as the plant is in `mode`
+  /// At a reset: the sets that modes begin anew from, by mode, where they are not those of
+  /// `assumptions`. They hold the state in each mode if the mode has changed once since `since`.
+  std::vector<LineForm> restarts = {};
 };
 
 /// A statement made in advance about the true mode i and the observer of mode j.

@@ -68,6 +68,9 @@ struct VerifiedPipeline {
   std::string failed_assumption = {};
   std::int64_t assumptions_until = -1;
   Answer fails_again = Answer::unknown;  ///< is that proven again from data.csv?
+  /// Exclusions and states after a reset rest on sets that the run has told, for a mode that has
+  /// changed once: that these hold the state is not checked.
+  bool from_told_sets = false;
 };
 
 /// What cddlib says of the conversions of polyhedra and of the exact linear programs that the

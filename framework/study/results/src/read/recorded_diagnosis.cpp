@@ -117,7 +117,7 @@ std::optional<Step> read_diagnosed_step(const Cursor& at) {
   const auto anew = read_flag(*reset);
   const auto name = mode->is(Kind::null) ? std::optional<std::string>("") : read_text(*mode, 1000);
   if (!now || !from || !anew || !name) return std::nullopt;
-  Step step{*now, *from, *anew, *name, {}, {}, at.value().line};
+  Step step{*now, *from, *anew, *name, {}, {}, at.value().line, {}};
   for (std::size_t j = 0; j < modes->size(); ++j) {
     const Cursor one = modes->item(j);
     if (!one.expect(Kind::object, not_as_written)) return std::nullopt;
@@ -127,6 +127,20 @@ std::optional<Step> read_diagnosed_step(const Cursor& at) {
     if (!left || !answer) return std::nullopt;
     step.candidate.push_back(*left);
     step.excluded.push_back(*answer == Answer::no);
+  }
+  const auto restarts = at.find("restarts");
+  if (!restarts) return step;
+  if (!restarts->expect(Kind::array, not_as_written)) return std::nullopt;
+  if (restarts->size() != modes->size()) {
+    restarts->error("has " + std::to_string(restarts->size()) + " sets, there are " +
+                        std::to_string(modes->size()) + " modes",
+                    not_as_written);
+    return std::nullopt;
+  }
+  for (std::size_t j = 0; j < restarts->size(); ++j) {
+    auto set = read_form(restarts->item(j), std::nullopt);
+    if (!set) return std::nullopt;
+    step.restarts.push_back(std::move(*set));
   }
   return step;
 }
@@ -144,10 +158,15 @@ RecordedDiagnosis read_diagnosed(const Cursor& pipeline, const SystemPart& syste
     const bool is_of_bank =
         step.candidate.size() == names.size() &&
         (step.mode.empty() || std::find(names.begin(), names.end(), step.mode) != names.end());
-    if (is_of_bank && (i == 0 || step.k > made.steps[i - 1].k) && step.since <= step.k) continue;
-    pipeline.problems().add(child(child(pipeline.pointer(), "steps"), i), step.line,
-                            "does not fit the modes of the study, or its time the step before",
-                            not_as_written);
+    const bool is_of_state = std::ranges::all_of(
+        step.restarts, [&](const LineForm& set) { return set.dim() == system.model.states(); });
+    if (is_of_bank && is_of_state && (i == 0 || step.k > made.steps[i - 1].k) &&
+        step.since <= step.k)
+      continue;
+    pipeline.problems().add(
+        child(child(pipeline.pointer(), "steps"), i), step.line,
+        "does not fit the modes or the states of the study, or its time the step before",
+        not_as_written);
   }
   read_estimates(pipeline, system.model.states(), names, made);
   return made;

@@ -47,13 +47,13 @@ std::optional<Index> read_size(const Cursor& set, const char* key) {
 
 }  // namespace
 
-std::optional<LineForm> read_form(const Cursor& at, Index dim) {
+std::optional<LineForm> read_form(const Cursor& at, std::optional<Index> dim) {
   if (!at.expect(Kind::object, not_as_written)) return std::nullopt;
   const auto n = read_size(at, "dim"), l = read_size(at, "lines"), g = read_size(at, "generators"),
              m = read_size(at, "constraints");
   if (!n || !l || !g || !m) return std::nullopt;
-  if (*n != dim) {
-    at.error("has dimension " + std::to_string(*n) + ", the state has " + std::to_string(dim),
+  if (dim && *n != *dim) {
+    at.error("has dimension " + std::to_string(*n) + ", the state has " + std::to_string(*dim),
              not_as_written);
     return std::nullopt;
   }

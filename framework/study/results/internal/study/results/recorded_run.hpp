@@ -60,6 +60,8 @@ struct RecordedDiagnosis {
     std::string mode = {};                            ///< "" for none
     std::vector<char> candidate = {}, excluded = {};  ///< by mode; excluded by this step
     int line = 0;                                     ///< of the file
+    /// Of a reset: what modes begin anew from; none: what is assumed of them.
+    std::vector<LineForm> restarts = {};
   };
   /// A box that holds the state as long as the plant is in the mode.
   struct Estimate {
@@ -119,7 +121,7 @@ struct RecordedRun {
 };
 
 /// A set in exchange form, as results files write it.
-std::optional<LineForm> read_form(const json::Cursor& at, Index dim);
+std::optional<LineForm> read_form(const json::Cursor& at, std::optional<Index> dim);
 
 /// All but the sets. Throws InputError.
 RecordedRun read_run(const std::filesystem::path& directory);

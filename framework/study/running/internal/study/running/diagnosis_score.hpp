@@ -47,12 +47,16 @@ class DiagnosisScore {
   void judge_segment(const Diagnosis& now);
   void judge_exclusions(const Diagnosis& now);
   bool throughout(Index mode, Index since) const;
+  bool changes_twice(const Diagnosis& now) const;
 
   std::function<void(const DiagnosisSegment&)> ended_;
   std::optional<DiagnosisSegment> segment_;
   std::optional<DiagnosisBefore> before_;
   bool watching_ =
       false;  ///< another mode was monitored when the segment began, and has not been given up
+  Index previous_from_ = -1;  ///< where the segment before began
+  bool changed_twice_ =
+      false;  ///< before a reset whose sets allow one change, and not mended since
   std::int64_t false_alarms_ = 0;
   bool wrong_mode_ = false;
   std::optional<TrueModeExcluded> excluded_;

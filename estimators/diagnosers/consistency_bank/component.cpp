@@ -13,6 +13,11 @@
 // can begin anew: exclusions stay, speak of the time from the first sample on, and the decision
 // ends as `unknown_fault` once no mode is left.
 //
+// `changes: followed`: sets are carried on besides that hold the state if the mode has changed
+// since all modes began (followed_changes.hpp). They are what modes begin anew from at a reset,
+// which needs no other set then, and they join the estimate that is told of the mode that is left,
+// which may have begun late. It assumes that the mode does not change twice between two resets.
+//
 // What is excluded is decided by the observers: exact sets (constrained and line zonotopes with
 // large budgets) exclude all that the samples contradict, outer ones less, and those whose
 // estimates are never empty (`luenberger`; `descriptor` on zonotopes and intervals) nothing. The
@@ -23,7 +28,7 @@
 
 #include "components.hpp"
 #include "cordon/core/error.hpp"
-#include "cordon/interfaces/nonlinear_model.hpp"
+#include "diagnosers/consistency_bank/followed_changes.hpp"
 #include "diagnosers/mode_elimination.hpp"
 #include "diagnosers/mode_gain.hpp"
 #include "diagnosers/mode_workers.hpp"
@@ -42,10 +47,11 @@ class ConsistencyBank final : public Diagnoser {
         known_(params.text("start") == "nominal" ? std::optional(bank().nominal) : std::nullopt),
         elimination_(bank().size(), params.integer("waiting_time"), known_),
         workers_(params.integer("threads")) {
-    for (const Mode& mode : bank().modes) {
-      observers_.push_back(
-          context.make->make_observer(params.component("observer"), {mode.model, context.backend}));
-    }
+    const auto make = [&](const Model& model) {
+      return context.make->make_observer(params.component("observer"), {model, context.backend});
+    };
+    for (const Mode& mode : bank().modes) observers_.push_back(make(mode.model));
+    if (params.text("changes") == "followed") changes_.emplace(bank(), context.backend, make);
     if (const auto set = restart_set(context, params, *observers_.front())) {
       for (const Mode& mode : bank().modes)
         restarts_.push_back(context.backend->import(within_parameters(*set, mode.model)));
@@ -81,17 +87,6 @@ class ConsistencyBank final : public Diagnoser {
   }
 
  private:
-  /// Parameters that are states have the mode's bounds, whatever the set says of them.
-  static LineForm within_parameters(const LineForm& set, const Model& model) {
-    const Index count = model.nonlinear ? model.nonlinear->parameters : 0;
-    if (count == 0) return set;
-    const Index others = set.dim() - count;
-    const LineForm& X0 = model.X0;  // with the box of the parameters, in generators of their own
-    return cartesian_product(
-        affine_map(set, Matrix::Identity(others, set.dim()), Vector::Zero(others)),
-        make_zonotope(X0.c.tail(count), X0.G.bottomRows(count)));
-  }
-
   using Estimates = std::vector<std::optional<Estimate>>;  ///< by mode; none: not at work
 
   bool do_takes_missing_outputs() const override {
@@ -102,6 +97,7 @@ class ConsistencyBank final : public Diagnoser {
   void do_start() override {
     for (const auto& observer : observers_) observer->start();
     lost_.assign(observers_.size(), "");
+    throughout_.clear();
     ended_ = unfinished_ = false;
   }
 
@@ -114,18 +110,66 @@ class ConsistencyBank final : public Diagnoser {
     if (!before) elimination_.start(now.k);
     if (!ended_) since_ = elimination_.since();
     const Estimates estimates = advance(now);
+    follow(now, estimates);
     const bool none_left = !ended_ && elimination_.update(now.k, excluded_by(estimates));
-    ended_ = ended_ || (none_left && restarts_.empty());
+    const bool anew = none_left && can_begin_anew();
+    ended_ = ended_ || (none_left && !anew);
     Diagnosis result = diagnosis(now.k, estimates);
-    result.reset = none_left && !restarts_.empty();
-    if (result.reset) {
-      for (std::size_t j = 0; j < observers_.size(); ++j) observers_[j]->start(restarts_[j]);
-      lost_.assign(observers_.size(), "");
-      advance(
-          now);  // what this sample alone excludes stays excluded, and is told with the next one
-    }
+    result.reset = anew;
+    if (anew) begin_anew(now, result);
     unfinished_ = false;
     return result;
+  }
+
+  /// The states of every mode if it has lasted, and if it has begun since.
+  void follow(const Sample& now, const Estimates& estimates) {
+    if (!changes_ || ended_) return;
+    std::vector<std::optional<Enclosure>> throughout(estimates.size());
+    std::vector<bool> unknown(estimates.size());
+    for (std::size_t j = 0; j < estimates.size(); ++j) {
+      if (estimates[j] && !is_excluded(estimates[j])) throughout[j] = estimates[j]->set;
+      unknown[j] = is_candidate(j) && !lost_[j].empty();
+    }
+    if (throughout_.empty()) {
+      changes_->begin(now, throughout);
+    } else {
+      changes_->step(now, throughout, unknown, workers_);
+    }
+    throughout_ = std::move(throughout);
+  }
+
+  /// Is there a set for every mode, of which one is not empty?
+  bool can_begin_anew() const {
+    if (!restarts_.empty()) return true;
+    bool known = changes_.has_value(), any = false;
+    for (std::size_t j = 0; known && j < observers_.size(); ++j) {
+      known = changes_->lost(j).empty();
+      any = any || changes_->since_change(j);
+    }
+    return known && any;
+  }
+
+  /// From what one change leads to, where that is something, else from the sets of all times.
+  void begin_anew(const Sample& now, Diagnosis& result) {
+    const std::size_t modes = observers_.size();
+    std::vector<std::optional<Enclosure>> from(restarts_.begin(), restarts_.end());
+    from.resize(modes);
+    bool changed = false;
+    for (std::size_t j = 0; changes_ && j < modes; ++j)
+      changed = changed || changes_->since_change(j) || !changes_->lost(j).empty();
+    for (std::size_t j = 0; changed && j < modes; ++j) {
+      if (!changes_->lost(j).empty()) continue;
+      const auto& states = changes_->since_change(j);
+      from[j] = states ? *states : backend().import(make_empty(bank()[0].model.states()));
+    }
+    for (std::size_t j = 0; j < modes; ++j) {
+      observers_[j]->start(from[j]);
+      if (changed) result.restarts.push_back((*from[j])->line_form());
+    }
+    lost_.assign(observers_.size(), "");
+    throughout_.clear();
+    // What this sample alone excludes stays excluded, and is told with the next one.
+    follow(now, advance(now));
   }
 
   /// Takes the sample to the observers of all candidates.
@@ -174,8 +218,12 @@ class ConsistencyBank final : public Diagnoser {
       if (estimates[j]) set_evidence(result.modes[j], *estimates[j]);
     }
     if (result.mode >= 0) {
-      if (const auto& estimate = estimates[static_cast<std::size_t>(result.mode)])
-        result.estimate = estimate->set;
+      const auto j = static_cast<std::size_t>(result.mode);
+      if (estimates[j] && (!changes_ || changes_->lost(j).empty())) {
+        result.estimate = estimates[j]->set;
+        if (changes_ && changes_->since_change(j))
+          result.estimate = backend().convex_hull(*result.estimate, *changes_->since_change(j));
+      }
     }
     return result;
   }
@@ -191,6 +239,9 @@ class ConsistencyBank final : public Diagnoser {
   std::optional<Index> known_;  ///< the mode at the start
   ModeElimination elimination_;
   std::vector<std::shared_ptr<Observer>> observers_;
+  std::optional<FollowedChanges> changes_;            ///< none: not followed
+  std::vector<std::optional<Enclosure>> throughout_;  ///< estimates of the sample before, since all
+                                                      ///< began; empty: this one is the first
   std::vector<Enclosure> restarts_;  ///< from which modes begin anew; empty: they cannot
   /// Why formulas could not be enclosed any more, or the model is not proven for the states that
   /// the mode allows: the mode stays possible until a reset. "" for others.
@@ -245,7 +296,8 @@ std::vector<Diagnostic> check_consistency_bank(const DiagnoserContext& context,
       problems.push_back({"/restart_set", "is empty",
                           "give a set that holds the state at all times, or leave it out"});
     }
-  } else if (problems.empty() && params.text("start") == "nominal") {
+  } else if (problems.empty() && params.text("start") == "nominal" &&
+             params.text("changes") == "restart") {
     const auto observer = context.make->make_observer(
         params.component("observer"), {context.bank[context.bank.nominal].model, context.backend});
     if (!ConsistencyBank::restart_set(context, params, *observer)) {
@@ -279,6 +331,13 @@ CORDON_COMPONENT(diagnoser, consistency_bank) {
              "reset; when absent: the observer's "
              "admissible set, or the whole space where the backend represents it; else excluded "
              "modes stay excluded");
+  schema.choice(
+      "changes",
+      "how modes begin anew after a reset: \"restart\", from a set that holds the state at "
+      "all times; \"followed\", from the states that one change of the mode since the last "
+      "reset leads to, which takes four times the work and assumes that there was no "
+      "second one",
+      {"restart", "followed"}, "restart");
   schema.integer("threads", "threads for the modes; 0: one per core; decisions do not depend on it",
                  1, 0, 1024);
   registrar.add(DiagnoserEntry{
