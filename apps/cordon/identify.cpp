@@ -154,7 +154,10 @@ std::string bounds_text(const Study& study, const BoundFactors& found, const Pai
 }
 
 std::string proof_text(const BoundFactors& found) {
-  if (found.required_by.empty()) return found.proven >= found.cost ? "" : "   nothing is proven";
+  if (found.required_by.empty() && found.proven <= 0)
+    return found.proven >= found.cost ? "" : "   nothing is proven";
+  if (found.required_by.empty())
+    return fmt::format("   proven: not below {:.6g}, whatever the outputs are", found.proven);
   return fmt::format("   proven: not below {:.6g}, by the outputs from k = {} to {}", found.proven,
                      found.required_by.front(), found.required_by.back());
 }

@@ -94,6 +94,30 @@ TEST_CASE("samples to leave out are told, with a proof that fewer do not do") {
   CHECK(report["left_out"]["at_least"] == 1);
 }
 
+TEST_CASE("bounds of descriptor systems are proven, and written") {
+  Json tied = study();  // the position x is measured as p
+  tied["system"] = Json::parse(R"json({"type": "descriptor",
+    "E": [[1, 0, 0], [0, 1, 0], [0, 0, 0]], "A": [[1, 0.5, 0], [0, 1, 0], [1, 0, -1]],
+    "Bw": [[0.125], [0.5], [0]], "C": [[0, 0, 1]],
+    "W": {"type": "box", "lower": [-1], "upper": [1]},
+    "V": {"type": "box", "lower": [-0.1], "upper": [0.1]}})json");
+  tied["pipelines"][0]["observer"] = "descriptor";
+  const Run run(tied, walk), without(study(), walk);
+  const Json found = Json::parse(run("identify s.json --json").out),
+             same = Json::parse(without("identify s.json --json").out);
+  CHECK(found["factors"]["cost"].get<double>() ==
+        doctest::Approx(same["factors"]["cost"].get<double>()).epsilon(1e-9));
+  CHECK(found["factors"]["required_by"] == same["factors"]["required_by"]);
+  CHECK(run("identify s.json --scale W --trade-off --leave-out 1 --write t.json").code == 0);
+  CHECK(run("run t.json --out again --no-report").code == 0);
+  tied["system"]["X0"] = Json::parse(R"({"type": "point", "center": [0, 0, 2]})");
+  tied["system"]["Bw"] = {{0.125}, {0.5}, {1}};
+  const test::Outcome told = Run(tied, "k,x\n0,2\n")("identify s.json --scale W");
+  CAPTURE(told.out);
+  CHECK(told.out.find("Factor  2   proven: not below 2, whatever the outputs are") !=
+        std::string::npos);
+}
+
 TEST_CASE("bounds are sought with the estimates of a pipeline where no program finds them") {
   Json formulas = study();
   formulas["system"] = Json::parse(R"json({"type": "nonlinear", "states": ["x", "v"],

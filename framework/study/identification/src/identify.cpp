@@ -11,13 +11,31 @@ namespace {
 
 constexpr double proven_enough = 1e-7;  ///< short of the factor found: what the solver rounds
 
+/// Those of the program's rows; μ as they are, and p with the other sign.
+identification::Multipliers multipliers_of(const Model& model, const Vector& y,
+                                           const std::vector<std::vector<Index>>& output_rows,
+                                           const std::vector<Index>& step_rows) {
+  const LinearModel& linear = model.linear;
+  const Index count = std::ssize(output_rows), n = linear.states();
+  identification::Multipliers made{Matrix::Zero(linear.outputs(), count),
+                                   Matrix::Zero(linear.is_descriptor() ? n : 0, count)};
+  for (Index k = 0; k < count; ++k) {
+    for (Index i = 0; i < linear.outputs(); ++i) {
+      const Index row = output_rows[as_size(k)][as_size(i)];
+      if (row >= 0) made.outputs(i, k) = y[row];
+    }
+    const Index step = step_rows[as_size(k)];
+    if (linear.is_descriptor() && step >= 0) made.steps.col(k) = -y.segment(step, n);
+  }
+  return made;
+}
+
 bool is_zonotope(const LineForm& X) { return X.lines() == 0 && X.constraints() == 0; }
 
 }  // namespace
 
 std::string why_not_identified(const Model& model) {
   if (!model.is_linear()) return "the system is written as formulas";
-  if (model.linear.is_descriptor()) return "the system has an E";
   if (model.region) return "the model is proven in a region, which data may leave";
   if (model.linear.is_uncertain() || model.linear.has_ranges())
     return "matrices of the system are known by intervals";
@@ -39,7 +57,8 @@ BoundFactors identify_bounds(const Model& model, std::span<const Sample> samples
   BoundFactors found;
   found.disturbances = Vector::Ones(model.W.generators());
   found.noises = Vector::Ones(model.V.generators());
-  const auto [program, output_rows] = identification::scaling_program(model, samples, factors);
+  const auto [program, output_rows, step_rows] =
+      identification::scaling_program(model, samples, factors);
   const LinearProgram::Solution solution = minimize(program, options.seconds);
   if (solution.status == LinearProgram::Status::infeasible)
     found.status = BoundFactors::Status::none;
@@ -52,20 +71,15 @@ BoundFactors identify_bounds(const Model& model, std::span<const Sample> samples
   };
   take(factors.of_disturbances, found.disturbances);
   take(factors.of_noises, found.noises);
-  Matrix multipliers = Matrix::Zero(model.linear.outputs(), std::ssize(samples));
-  for (Index k = 0; k < multipliers.cols(); ++k) {
-    for (Index i = 0; i < multipliers.rows(); ++i) {
-      const Index row = output_rows[as_size(k)][as_size(i)];
-      if (row >= 0) multipliers(i, k) = solution.y[row];
-    }
-  }
+  const identification::Multipliers multipliers =
+      multipliers_of(model, solution.y, output_rows, step_rows);
   const auto proof = identification::scaling_proof(model, samples, factors, multipliers,
                                                    (1 - proven_enough) * found.cost);
   if (!proof) return found;
   found.proven = proof->least;
   for (const Index place : proof->samples) {
     found.required_by.push_back(samples[as_size(place)].k);
-    found.weights.push_back(multipliers.col(place).cwiseAbs().sum());
+    found.weights.push_back(multipliers.outputs.col(place).cwiseAbs().sum());
   }
   return found;
 }

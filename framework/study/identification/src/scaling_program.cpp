@@ -2,6 +2,9 @@
 #include "study/identification/scaling_program.hpp"
 
 #include <numeric>
+#include <optional>
+
+#include "cordon/interfaces/descriptor_matrix.hpp"
 
 namespace cordon::identification {
 
@@ -10,23 +13,30 @@ namespace {
 class ProgramMaker {
  public:
   ProgramMaker(const Model& model, std::span<const Sample> samples, const Factors& factors)
-      : model_(model), linear_(model.linear), samples_(samples), factors_(factors) {}
+      : model_(model), linear_(model.linear), samples_(samples), factors_(factors) {
+    if (linear_.is_descriptor()) E_.emplace(linear_.E);
+    times_ = std::ssize(samples) + (has_static_rows() ? 1 : 0);
+  }
 
   ScalingProgram make() {
     for (Index j = 0; j < factors_.count; ++j) column(0, infinity, 1);
     states_ = columns_;
-    for (Index i = 0; i < std::ssize(samples_) * linear_.states(); ++i)
-      column(-infinity, infinity, 0);
+    for (Index i = 0; i < times_ * linear_.states(); ++i) column(-infinity, infinity, 0);
     write_start();
     for (Index k = 0; k < std::ssize(samples_); ++k) {
       write_outputs(samples_[as_size(k)], k);
-      if (k + 1 < std::ssize(samples_)) write_step(samples_[as_size(k)], k);
+      if (k + 1 < times_) {
+        write_step(samples_[as_size(k)], k);
+      } else {
+        made_.step_rows.push_back(-1);
+      }
     }
     finish();
     return std::move(made_);
   }
 
  private:
+  bool has_static_rows() const { return E_ && E_->rank < linear_.states(); }
   Index state(Index k, Index i) const { return states_ + k * linear_.states() + i; }
 
   Index column(double lower, double upper, double cost) {
@@ -98,12 +108,28 @@ class ProgramMaker {
     const Matrix G = linear_.Bw * model_.W.G;
     const Vector known = linear_.B * sample.u + linear_.Bw * model_.W.c;
     const Index first = generators(factors_.of_disturbances);
+    const Index z = E_ && !E_->as_written ? write_core(k) : -1;
+    made_.step_rows.push_back(rows_);
     for (Index i = 0; i < linear_.states(); ++i) {
       const Index at = row(known[i], known[i]);
-      entry(at, state(k + 1, i), 1);
+      if (!E_) entry(at, state(k + 1, i), 1);
+      for (Index j = 0; E_ && j < E_->left.cols(); ++j)
+        entry(at, z < 0 ? state(k + 1, j) : z + j, E_->left(i, j));
       for (Index j = 0; j < linear_.states(); ++j) entry(at, state(k, j), -linear_.A(i, j));
       write_generators(at, G, i, first);
     }
+  }
+
+  /// core z = right x_{k+1}: the first column of z.
+  Index write_core(Index k) {
+    const Index z = columns_;
+    for (Index j = 0; j < E_->rank; ++j) column(-infinity, infinity, 0);
+    for (Index i = 0; i < E_->rank; ++i) {
+      const Index at = row(0, 0);
+      for (Index j = 0; j < E_->rank; ++j) entry(at, z + j, E_->core(i, j));
+      for (Index j = 0; j < linear_.states(); ++j) entry(at, state(k + 1, j), -E_->right(i, j));
+    }
+    return z;
   }
 
   void finish() {
@@ -120,6 +146,8 @@ class ProgramMaker {
   const LinearModel& linear_;
   std::span<const Sample> samples_;
   const Factors& factors_;
+  std::optional<DescriptorMatrix> E_;
+  Index times_;  ///< of which there are states
   ScalingProgram made_;
   std::vector<double> lower_, upper_, cost_, row_lower_, row_upper_;
   Index columns_ = 0, rows_ = 0, states_ = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cordon/core/linalg.hpp"
 #include "solvers/rational_system.hpp"
 
 namespace cordon::identification {
@@ -12,52 +13,56 @@ namespace {
 
 using rational::exact;
 using rational::exact_matrix;
-using rational::Rational;
-using rational::RationalMatrix;
-using rational::RationalVector;
+using rational::product;
 
-constexpr double negligible = 1e-9;   ///< multipliers of this share of the largest are left out
-constexpr double nearly_zero = 1e-9;  ///< of the terms of p_k: what the solver leaves of 0
+constexpr double negligible = 1e-9;    ///< multipliers of this share of the largest are left out
+constexpr double nearly_zero = 1e-9;   ///< of the terms of r_k: what the solver leaves of 0
+constexpr Index most_conditions = 80;  ///< that are met together, where they do not one by one
 
-Rational size_of(const Rational& q) { return q < 0 ? Rational(-q) : q; }
-
-/// Aᵀ x.
-RationalVector transposed_product(const RationalMatrix& A, const RationalVector& x) {
-  RationalVector product(as_size(A.cols()));
-  for (Index j = 0; j < A.cols(); ++j)
-    for (Index i = 0; i < A.rows(); ++i)
-      if (A(i, j) != 0 && x[as_size(i)] != 0) product[as_size(j)] += A(i, j) * x[as_size(i)];
-  return product;
+Vector rounded(const RationalVector& x) {
+  Vector value(std::ssize(x));
+  for (Index i = 0; i < value.size(); ++i) value[i] = x[as_size(i)].get_d();
+  return value;
 }
 
-void add(RationalVector& to, const RationalVector& x) {
-  for (std::size_t i = 0; i < to.size(); ++i) to[i] += x[i];
+Matrix rounded(const RationalMatrix& A) {
+  Matrix value(A.rows(), A.cols());
+  for (Index i = 0; i < A.rows(); ++i) value.row(i) = rounded(A.row(i)).transpose();
+  return value;
 }
 
-double largest(const RationalVector& x) {
-  double most = 0;
-  for (const Rational& entry : x) most = std::max(most, std::abs(entry.get_d()));
-  return most;
+RationalVector column(const RationalMatrix& A, Index j) {
+  RationalVector value(as_size(A.rows()));
+  for (Index i = 0; i < A.rows(); ++i) value[as_size(i)] = A(i, j);
+  return value;
 }
+
+/// A column of entries, those left out that are small beside `most`.
+RationalVector kept(VectorIn x, double most) {
+  RationalVector value(as_size(x.size()));
+  for (Index i = 0; i < x.size(); ++i)
+    if (std::abs(x[i]) > negligible * most) value[as_size(i)] = exact(x[i]);
+  return value;
+}
+
+double largest_of(const Matrix& A) { return A.size() ? A.cwiseAbs().maxCoeff() : 0; }
 
 class Prover {
  public:
   Prover(const Model& model, std::span<const Sample> samples, const Factors& factors,
-         const Matrix& multipliers)
-      : model_(model),
-        samples_(samples),
-        factors_(factors),
-        A_(exact_matrix(model.linear.A)),
-        C_(exact_matrix(model.linear.C)) {
-    const double most = multipliers.size() ? multipliers.cwiseAbs().maxCoeff() : 0;
-    for (Index k = 0; k < multipliers.cols(); ++k) {
-      RationalVector& mu = mu_.emplace_back(as_size(multipliers.rows()));
-      for (Index i = 0; i < multipliers.rows(); ++i) {
-        if (!(std::abs(multipliers(i, k)) > negligible * most)) continue;
-        mu[as_size(i)] = exact(multipliers(i, k));
-        if (first_ < 0) first_ = k;
-        last_ = k;
-      }
+         const Multipliers& multipliers)
+      : model_(model), samples_(samples), factors_(factors), costates_(model.linear) {
+    const double most = largest_of(multipliers.outputs);
+    const Matrix free_ones = of_static_rows(multipliers.steps);
+    const double most_free = std::max(most, largest_of(free_ones));
+    for (Index k = 0; k < std::ssize(samples); ++k) {
+      mu_.push_back(kept(multipliers.outputs.col(k), most));
+      const bool is_free = free_ones.size() > 0 && !(costates_.is_determined && k > 0);
+      nu_.push_back(is_free ? kept(free_ones.col(k), most_free)
+                            : RationalVector(as_size(costates_.static_rows)));
+      if (!has_multipliers(k)) continue;
+      if (first_ < 0) first_ = k;
+      last_ = k;
     }
   }
 
@@ -65,14 +70,14 @@ class Prover {
   /// multiplier, or goes back to the start; multipliers are cut into clusters, or are one.
   std::optional<ScalingProof> prove(double wanted) {
     if (first_ < 0) return std::nullopt;
-    const std::vector<RationalVector> as_given = mu_;
+    const std::vector<RationalVector> outputs_given = mu_, static_given = nu_;
     std::optional<ScalingProof> best;
     for (const bool is_cut : {true, false}) {
       for (const Index begin : {first_, Index{0}}) {
         is_cut_ = is_cut;
-        mu_ = as_given;
-        const auto found = proof_from(begin);
-        if (found && (!best || found->least > best->least)) best = found;
+        mu_ = outputs_given, nu_ = static_given;
+        auto found = proof_from(begin);
+        if (found && (!best || found->least > best->least)) best = std::move(found);
         if (best && best->least >= wanted) return best;
         if (first_ == 0) break;
       }
@@ -81,159 +86,183 @@ class Prover {
   }
 
  private:
-  /// Multipliers that have to do with each other: p_k is 0 before the first one of them, or goes
-  /// back to the start.
+  /// Multipliers that have to do with each other: r_k is 0 at the first one of them, or goes back
+  /// to the start.
   struct Cluster {
     Index begin, end;
   };
+  /// A multiplier that may move, and what that does to the conditions.
+  struct Move {
+    Rational* multiplier;
+    RationalVector slope;
+  };
 
-  /// Cut where the solver's p_k is 0 up to rounding. The last ones first.
+  bool has_multipliers(Index k) const {
+    return largest(mu_[as_size(k)]) > 0 || largest(nu_[as_size(k)]) > 0;
+  }
+  /// Does ν_k follow from μ? Not at the start, where X0 bounds the state as well.
+  bool follows(Index k) const {
+    return costates_.static_rows > 0 && costates_.is_determined && k > 0;
+  }
+
+  /// ν of what the solver says of p = J r + N ν, by least squares.
+  Matrix of_static_rows(const Matrix& steps) const {
+    if (costates_.static_rows == 0 || steps.cols() == 0) return Matrix();
+    const Matrix Et = rounded(transposed(exact_descriptor(model_.linear)));
+    const Matrix rest = steps - rounded(costates_.J) * (Et * steps);
+    const Matrix Nt = rounded(transposed(costates_.N));
+    const std::optional<Matrix> nu = linalg::solve(Nt * Nt.transpose(), Nt * rest);
+    return nu ? *nu : Matrix();
+  }
+
+  /// Cut where the solver's r_k is 0 up to rounding. The last ones first.
   std::vector<Cluster> clusters(Index begin) const {
-    const auto row = [](const RationalVector& x) {
-      Vector rounded(std::ssize(x));
-      for (Index i = 0; i < rounded.size(); ++i) rounded[i] = x[as_size(i)].get_d();
-      return rounded;
-    };
+    if (!costates_.is_determined) return {{begin, last_}};
+    const Matrix of_outputs = rounded(costates_.of_outputs), of_next = rounded(costates_.of_next);
     double terms = 0;
     for (const RationalVector& mu : mu_) terms = std::max(terms, largest(mu));
-    terms *= model_.linear.C.cwiseAbs().maxCoeff();
+    terms *= largest_of(of_outputs);
     std::vector<Cluster> all;
-    Vector p = Vector::Zero(model_.linear.states());
+    Vector r = Vector::Zero(model_.linear.states());
     Index end = -1;
     for (Index k = last_; k >= first_; --k) {
-      const bool has_multipliers = largest(mu_[as_size(k)]) > 0;
-      if (end < 0 && !has_multipliers) continue;
+      if (end < 0 && !has_multipliers(k)) continue;
       if (end < 0) end = k;
-      p = model_.linear.A.transpose() * p + model_.linear.C.transpose() * row(mu_[as_size(k)]);
-      if (!is_cut_ || !has_multipliers || k == first_ ||
-          p.cwiseAbs().maxCoeff() > nearly_zero * terms)
+      r = of_next * r + of_outputs * rounded(mu_[as_size(k)]);
+      if (!is_cut_ || !has_multipliers(k) || k == first_ ||
+          r.cwiseAbs().maxCoeff() > nearly_zero * terms)
         continue;
       all.push_back({k, end});
       end = -1;
-      p.setZero();
+      r.setZero();
     }
     if (end >= 0) all.push_back({begin, end});
     return all;
   }
 
   std::optional<ScalingProof> proof_from(Index begin) {
-    costates_.assign(as_size(last_ + 1), {});
+    steps_.assign(samples_.size(), {});
     for (const Cluster& cluster : clusters(begin)) {
       const Index n = model_.linear.states();
       const Matrix L = cluster.begin > 0 ? Matrix(Matrix::Identity(n, n)) : model_.X0.M;
-      follow_costates(cluster);
-      if (L.cols() == 0) continue;
-      if (!close(cluster, L)) return std::nullopt;
-      follow_costates(cluster);
+      const RationalVector left = follow(cluster, exact_matrix(L.transpose()));
+      if (largest(left) == 0) continue;
+      if (!close(cluster, exact_matrix(L.transpose()), left)) return std::nullopt;
+      follow(cluster, exact_matrix(L.transpose()));
     }
-    return bound();
+    return bound_of(model_, samples_, factors_, {mu_, steps_});
   }
 
-  void follow_costates(const Cluster& cluster) {
+  /// The p_k of the cluster; gives the conditions that they do not meet: Lᵀ r at the beginning, and
+  /// where ν is free Rᵀ r_k after it.
+  RationalVector follow(const Cluster& cluster, const RationalMatrix& Lt) {
+    RationalVector r(as_size(model_.linear.states())), missed;
+    const RationalMatrix Rt = transposed(costates_.R);
     for (Index k = cluster.end; k >= cluster.begin; --k) {
-      RationalVector& p = costates_[as_size(k)];
-      p = transposed_product(C_, mu_[as_size(k)]);
-      if (k < cluster.end) add(p, transposed_product(A_, costates_[as_size(k + 1)]));
+      RationalVector& p = steps_[as_size(k)];
+      p = times(costates_.J, r);
+      r = times(costates_.from_next, r);
+      add(r, times(costates_.Ct, mu_[as_size(k)]));
+      if (follows(k)) {
+        const RationalVector of_static = times(costates_.Z, r);
+        add(p, of_static);
+        add(r, times(costates_.At, of_static));
+      } else if (costates_.static_rows > 0) {
+        add(p, times(costates_.N, nu_[as_size(k)]));
+        add(r, times(costates_.from_static, nu_[as_size(k)]));
+      }
+      const bool is_begin = k == cluster.begin;
+      if (!is_begin && costates_.is_determined) continue;
+      const RationalVector here = times(is_begin ? Lt : Rt, r);
+      missed.insert(missed.end(), here.begin(), here.end());
     }
+    return missed;
   }
 
-  /// Moves multipliers, by the least sum of squares, so that Lᵀ p = 0 at the beginning.
-  bool close(const Cluster& cluster, const Matrix& L) {
-    RationalVector left = transposed_product(exact_matrix(L), costates_[as_size(cluster.begin)]);
-    if (largest(left) == 0) return true;
-    for (Rational& entry : left) entry = -entry;
-    const RationalMatrix At = exact_matrix(model_.linear.A.transpose()),
-                         Ct = exact_matrix(model_.linear.C.transpose());
-    RationalMatrix power = exact_matrix(L.transpose()), gram(L.cols(), L.cols());
-    struct Move {
-      Rational* multiplier;
-      RationalVector slope;  ///< of Lᵀ p
-    };
-    std::vector<Move> moves;
+  /// May the multipliers of time k move, and that of output i?
+  bool may_move(Index k, Index i) const { return !is_cut_ || mu_[as_size(k)][as_size(i)] != 0; }
+
+  /// Where ν follows from μ.
+  std::vector<Move> moves(const Cluster& cluster, const RationalMatrix& Lt) {
+    std::vector<Move> all;
+    RationalMatrix power = Lt;
     for (Index k = cluster.begin; k <= cluster.end; ++k) {
-      RationalVector& mu = mu_[as_size(k)];
       const std::vector<Index> present = present_outputs(samples_[as_size(k)]);
-      const bool may_move = is_cut_ ? largest(mu) != 0 : !present.empty();
-      const RationalMatrix slopes = may_move ? product(power, Ct) : RationalMatrix(0, 0);
-      for (const Index i : may_move ? present : std::vector<Index>{}) {
-        if (is_cut_ && mu[as_size(i)] == 0) continue;
-        Move& move = moves.emplace_back(Move{&mu[as_size(i)], {}});
-        for (Index row = 0; row < slopes.rows(); ++row) move.slope.push_back(slopes(row, i));
-        for (Index row = 0; row < gram.rows(); ++row)
-          for (Index col = 0; col < gram.cols(); ++col)
-            gram(row, col) += slopes(row, i) * slopes(col, i);
+      const bool any = is_cut_ ? largest(mu_[as_size(k)]) != 0 : !present.empty();
+      if (any) {
+        const RationalMatrix slopes =
+            product(power, follows(k) ? costates_.of_outputs : costates_.Ct);
+        for (const Index i : present)
+          if (may_move(k, i)) all.push_back({&mu_[as_size(k)][as_size(i)], column(slopes, i)});
       }
-      if (k < cluster.end) power = product(power, At);
+      if (k == 0 && costates_.static_rows > 0) {
+        const RationalMatrix slopes = product(power, costates_.from_static);
+        for (Index j = 0; j < costates_.static_rows; ++j)
+          all.push_back({&nu_[0][as_size(j)], column(slopes, j)});
+      }
+      if (k < cluster.end)
+        power = product(power, follows(k) ? costates_.of_next : costates_.from_next);
     }
-    const auto weights = rational::solve(gram, left, Vector::Ones(gram.cols()));
+    return all;
+  }
+
+  /// Where it does not: of all conditions from the one of time k back to the beginning.
+  std::vector<Move> free_moves(const Cluster& cluster, const RationalMatrix& Lt) {
+    const RationalMatrix Rt = transposed(costates_.R);
+    const Index before = costates_.static_rows * (cluster.end - cluster.begin);
+    std::vector<Move> all;
+    const auto add_move = [&](Rational& multiplier, Index k, RationalVector r) {
+      RationalVector slope(as_size(before + Lt.rows()));
+      for (Index j = k; j >= cluster.begin; --j) {
+        const RationalVector here = times(j > cluster.begin ? Rt : Lt, r);
+        std::ranges::copy(here, slope.begin() + costates_.static_rows * (cluster.end - j));
+        if (j > cluster.begin) r = times(costates_.from_next, r);
+      }
+      all.push_back({&multiplier, std::move(slope)});
+    };
+    for (Index k = cluster.begin; k <= cluster.end; ++k) {
+      for (const Index i : present_outputs(samples_[as_size(k)]))
+        if (may_move(k, i)) add_move(mu_[as_size(k)][as_size(i)], k, column(costates_.Ct, i));
+      for (Index j = 0; j < costates_.static_rows; ++j)
+        add_move(nu_[as_size(k)][as_size(j)], k, column(costates_.from_static, j));
+    }
+    return all;
+  }
+
+  /// Moves multipliers, by the least sum of squares, so that the conditions hold.
+  bool close(const Cluster& cluster, const RationalMatrix& Lt, RationalVector left) {
+    const Index conditions = std::ssize(left);
+    if (!costates_.is_determined && conditions > most_conditions) return false;
+    for (Rational& entry : left) entry = -entry;
+    const std::vector<Move> all =
+        costates_.is_determined ? moves(cluster, Lt) : free_moves(cluster, Lt);
+    RationalMatrix gram(conditions, conditions);
+    for (const Move& move : all)
+      for (Index row = 0; row < conditions; ++row)
+        for (Index col = 0; col < conditions; ++col)
+          if (move.slope[as_size(row)] != 0 && move.slope[as_size(col)] != 0)
+            gram(row, col) += move.slope[as_size(row)] * move.slope[as_size(col)];
+    const auto weights = rational::solve(gram, left, Vector::Ones(conditions));
     if (!weights) return false;
-    for (const Move& move : moves) *move.multiplier += rational::dot(move.slope, *weights);
+    for (const Move& move : all) *move.multiplier += rational::dot(move.slope, *weights);
     return true;
-  }
-
-  std::optional<ScalingProof> bound() {
-    const LinearModel& linear = model_.linear;
-    const RationalMatrix B = exact_matrix(linear.B), Bw = exact_matrix(linear.Bw),
-                         D = exact_matrix(linear.D), Dv = exact_matrix(linear.Dv);
-    left_ = 0;
-    reach_.assign(as_size(factors_.count), Rational(0));
-    for (Index k = 0; k <= last_; ++k) {
-      const RationalVector& p = costates_[as_size(k)];
-      if (p.empty()) continue;  // 0, as are the multipliers
-      const RationalVector& mu = mu_[as_size(k)];
-      const Sample& sample = samples_[as_size(k)];
-      for (std::size_t i = 0; i < mu.size(); ++i)
-        if (mu[i] != 0) left_ += mu[i] * exact(sample.y[static_cast<Index>(i)]);
-      left_ -= rational::dot(transposed_product(D, mu), exact(sample.u));
-      take(model_.V, factors_.of_noises, transposed_product(Dv, mu));
-      if (k == 0) continue;
-      left_ -= rational::dot(transposed_product(B, p), exact(samples_[as_size(k - 1)].u));
-      take(model_.W, factors_.of_disturbances, transposed_product(Bw, p));
-    }
-    if (!costates_.front().empty())
-      take(model_.X0, std::vector<Index>(as_size(model_.X0.generators()), -1), costates_.front());
-    return ended();
-  }
-
-  /// Takes dᵀ x off, at most over the set; generators with a factor count for it.
-  void take(const LineForm& set, const std::vector<Index>& factors, const RationalVector& d) {
-    left_ -= rational::dot(d, exact(set.c));
-    const RationalVector reach = transposed_product(exact_matrix(set.G), d);
-    for (std::size_t j = 0; j < reach.size(); ++j) {
-      if (factors[j] < 0) {
-        left_ -= size_of(reach[j]);
-      } else {
-        reach_[as_size(factors[j])] += size_of(reach[j]);
-      }
-    }
-  }
-
-  std::optional<ScalingProof> ended() const {
-    const Rational most = *std::max_element(reach_.begin(), reach_.end());
-    ScalingProof proof{0, {}};
-    for (Index k = first_; k <= last_; ++k)
-      if (largest(mu_[as_size(k)]) > 0) proof.samples.push_back(k);
-    if (left_ <= 0) return proof;
-    proof.least = most > 0 ? std::max(0.0, rational::enclose(left_ / most).lower) : infinity;
-    return proof;
   }
 
   const Model& model_;
   std::span<const Sample> samples_;
   const Factors& factors_;
-  RationalMatrix A_, C_;
-  std::vector<RationalVector> mu_;        ///< per sample
-  std::vector<RationalVector> costates_;  ///< p_k; without entries where it is 0
+  Costates costates_;
+  std::vector<RationalVector> mu_;     ///< per sample
+  std::vector<RationalVector> nu_;     ///< of static rows, where they do not follow from μ
+  std::vector<RationalVector> steps_;  ///< p_k; without entries where it is 0
   Index first_ = -1, last_ = -1;
   bool is_cut_ = true;  ///< into clusters; else all outputs from first to last are moved, too
-  Rational left_;
-  std::vector<Rational> reach_;  ///< D_j
 };
 
 }  // namespace
 
 std::optional<ScalingProof> scaling_proof(const Model& model, std::span<const Sample> samples,
-                                          const Factors& factors, const Matrix& multipliers,
+                                          const Factors& factors, const Multipliers& multipliers,
                                           double wanted) {
   return Prover(model, samples, factors, multipliers).prove(wanted);
 }

@@ -20,9 +20,11 @@ enum class Scaled {
 };
 
 /// Factors under which a trajectory explains the samples:
-///   x_0 ∈ X0,  x_{k+1} = A x_k + B u_k + Bw w_k,  y_k = C x_k + D u_k + Dv v_k,
+///   x_0 ∈ X0,  E x_{k+1} = A x_k + B u_k + Bw w_k,  y_k = C x_k + D u_k + Dv v_k,
 ///   w_k ∈ W(s), v_k ∈ V(s)
-/// at the smallest cost: the factor itself, or Σ s_j where each generator has one.
+/// for all k, the last one included, whose x_{k+1} is free (E is that of DescriptorMatrix, the
+/// identity without one), at the smallest cost: the factor itself, or Σ s_j where each generator
+/// has one.
 struct BoundFactors {
   enum class Status {
     found,  ///< and no smaller ones are consistent
@@ -36,7 +38,8 @@ struct BoundFactors {
   /// from multipliers of the outputs, in rational arithmetic. At least 0.
   double proven = 0;
   /// k of the samples whose outputs have multipliers that are not 0, which alone require that, in
-  /// ascending order; empty: nothing is proven.
+  /// ascending order. Empty: nothing is proven; or, where `proven` is positive, X0, the inputs and
+  /// the static rows of a descriptor system require it whatever the outputs are.
   std::vector<Index> required_by = {};
   std::vector<double> weights = {};  ///< of these: their multipliers' magnitudes
 };
@@ -46,8 +49,8 @@ struct IdentifyOptions {
   double seconds = 60;  ///< for the solver
 };
 
-/// Why these bounds are not found for the model; empty: they are. Linear models without intervals
-/// and without a region, E = I, W and V zonotopes, X0 without constraints.
+/// Why these bounds are not found for the model; empty: they are. Linear models with any E, without
+/// intervals and without a region, W and V zonotopes, X0 without constraints.
 std::string why_not_identified(const Model& model);
 
 /// One sparse linear program over all samples, which follow each other; O(N) columns and rows.
