@@ -63,9 +63,15 @@ Vector point_of(Draw& draw, const LineForm& X) {
          (sum - first) * X.G.col(g - 1);
 }
 
-/// The mode's model with disturbances of this step alone.
+/// The mode's model with disturbances and matrices of this step alone.
 Model at_this_step(const Mode& mode, Draw& draw) {
   Model model = mode.model;
+  LinearModel& m = model.linear;
+  for (auto [center, radius] :
+       {std::pair(&m.A, &m.A_radius), {&m.B, &m.B_radius}, {&m.C, &m.C_radius}}) {
+    if (radius->size() != 0)
+      *center += radius->cwiseProduct(draw_matrix(draw, radius->rows(), radius->cols(), 1));
+  }
   model.W = make_point(point_of(draw, model.W));
   model.V = make_point(point_of(draw, model.V));
   return model;
@@ -123,6 +129,19 @@ RandomBank random_bank(std::uint64_t seed, Differ what) {
   if (below(draw, 2) == 0)
     params.set("max_generators", static_cast<std::int64_t>(n + below(draw, 4)));
   return made;
+}
+
+/// Some of the matrices of some modes become intervals.
+void add_intervals(ModeBank& bank, std::uint64_t seed) {
+  Draw draw{std::mt19937_64(seed + 1000)};
+  for (Mode& mode : bank.modes) {
+    LinearModel& m = mode.model.linear;
+    for (auto [center, radius] :
+         {std::pair(&m.A, &m.A_radius), {&m.B, &m.B_radius}, {&m.C, &m.C_radius}}) {
+      if (below(draw, 3) != 0)
+        *radius = draw_matrix(draw, center->rows(), center->cols(), .01).cwiseAbs();
+    }
+  }
 }
 
 struct Tally {
@@ -209,7 +228,8 @@ std::uint64_t seeds() {
   return wanted ? std::stoull(wanted) : 4;
 }
 
-void check_banks(Differ what, const std::string& observer = "", bool gaps = false) {
+void check_banks(Differ what, const std::string& observer = "", bool gaps = false,
+                 bool intervals = false) {
   const std::string type = observer.empty() ? "observer_bank" : "consistency_bank";
   const std::uint64_t count = observer.empty() ? seeds() : (seeds() + 2) / 3;
   for (const std::string name : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
@@ -218,6 +238,13 @@ void check_banks(Differ what, const std::string& observer = "", bool gaps = fals
     for (std::uint64_t seed = 1; seed <= count; ++seed) {
       CAPTURE(seed);
       RandomBank random = random_bank(seed, what);
+      if (intervals) {
+        add_intervals(random.bank, seed);
+        if (what == Differ::models)
+          random.parameters.set("state_set",
+                                box_around(Vector::Zero(random.bank[0].model.states()),
+                                           Vector::Constant(random.bank[0].model.states(), 20)));
+      }
       const ModeBank plant = random.bank;  // without E
       if (!observer.empty())
         random.parameters = consistency_parameters(seed, observer, random.bank);
@@ -248,6 +275,12 @@ TEST_CASE("modes that differ in everything") { check_banks(Differ::models); }
 TEST_CASE("banks of samples that lack outputs") {
   for (const Differ what : {Differ::actuators, Differ::sensors, Differ::models})
     check_banks(what, "", true);
+}
+TEST_CASE("banks of interval matrices, with gaps and without") {
+  for (const Differ what : {Differ::actuators, Differ::sensors, Differ::models}) {
+    check_banks(what, "", false, true);
+    check_banks(what, "", true, true);
+  }
 }
 TEST_CASE("estimates in place of residuals") {
   for (const std::string observer : {"prediction_correction", "descriptor"}) {

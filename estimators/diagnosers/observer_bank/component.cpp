@@ -5,6 +5,7 @@
 
 #include "components.hpp"
 #include "cordon/core/error.hpp"
+#include "diagnosers/observer_bank/interval_modes.hpp"
 #include "diagnosers/observer_bank/observer_bank.hpp"
 #include "diagnosers/observer_bank/region_check.hpp"
 #include "gains/gain_certificate.hpp"
@@ -51,7 +52,7 @@ ParamSchema bank_parameters() {
   schema.set("start_set", "first error set for iterate; absent: the origin");
   schema.set("state_set",
              "a set that holds the state at all times, needed where modes have different A; "
-             "absent: computed if A is stable");
+             "absent: computed if A is stable; interval matrices act on its hull");
   schema.integer("threads",
                  "threads for the observers; 0: one per core; decisions do not depend on it", 1, 0,
                  1024);
@@ -211,20 +212,33 @@ void check_own_starts(const DiagnoserContext& context, const Params& params,
   }
 }
 
-std::vector<Diagnostic> check_observer_bank(const DiagnoserContext& context, const Params& params) {
-  const ModeBank& bank = context.bank;
+/// The modes without interval matrices.
+ExactModes exact_modes(const ModeBank& bank, const Params& params) {
+  OfflineOptions options;
+  options.accuracy = params.real("accuracy");
+  options.state_set = set_or_none(params, "state_set");
+  options.initial_set = set_or_none(params, "initial_set");
+  return with_exact_matrices(bank, options);
+}
+
+std::vector<Diagnostic> check_observer_bank(const DiagnoserContext& given, const Params& params) {
   std::vector<Diagnostic> problems;
-  for (const Mode& mode : bank.modes) {
+  for (const Mode& mode : given.bank.modes) {
     if (!mode.model.linear.is_descriptor()) continue;
     problems.push_back(
         {"/type", "\"observer_bank\" takes modes of type \"lti\"; \"" + mode.name + "\" has an E",
          "use the diagnoser \"consistency_bank\" with the observer \"descriptor\""});
     return problems;
   }
-  problems = check_common({bank[bank.nominal].model, context.backend}, params);
-  check_own_starts(context, params, problems);
+  problems = check_common({given.bank[given.bank.nominal].model, given.backend}, params);
+  check_own_starts(given, params, problems);
+  check_shapes(given.bank, params, problems);
+  ExactModes exact{given.bank};
+  if (problems.empty()) exact = exact_modes(given.bank, params);
+  problems.insert(problems.end(), exact.problems.begin(), exact.problems.end());
+  const ModeBank& bank = exact.bank;
+  const DiagnoserContext context{bank, given.backend, given.make};
   check_gains(context, params, problems);
-  check_shapes(bank, params, problems);
   if (!problems.empty()) return problems;
   const std::vector<Matrix> gains = matrices_of(gains_of(context, params));
   problems = check_offline(bank, gains, offline_options(params));
@@ -244,10 +258,11 @@ CORDON_COMPONENT(diagnoser, observer_bank) {
         if (auto problems = check_observer_bank(context, params); !problems.empty()) {
           throw InputError("diagnoser \"observer_bank\"", std::move(problems));
         }
-        return std::make_unique<ObserverBank>(context.bank, context.backend,
-                                              options_of(context, params));
+        const ModeBank bank = exact_modes(context.bank, params).bank;
+        const DiagnoserContext exact{bank, context.backend, context.make};
+        return std::make_unique<ObserverBank>(bank, context.backend, options_of(exact, params));
       },
-      false,
+      true,
       true,
       false,
       true});
