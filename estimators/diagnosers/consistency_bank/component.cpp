@@ -18,6 +18,8 @@
 // which needs no other set then, and they join the estimate that is told of the mode that is left,
 // which may have begun late. It assumes that the mode does not change twice between two resets.
 //
+// Interval matrices are for observers that take them.
+//
 // What is excluded is decided by the observers: exact sets (constrained and line zonotopes with
 // large budgets) exclude all that the samples contradict, outer ones less, and those whose
 // estimates are never empty (`luenberger`; `descriptor` on zonotopes and intervals) nothing. The
@@ -348,7 +350,7 @@ CORDON_COMPONENT(diagnoser, consistency_bank) {
       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
         return std::make_unique<ConsistencyBank>(context, params);
       },
-      false,
+      true,
       true,
       true,
       true});
