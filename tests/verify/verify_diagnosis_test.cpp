@@ -321,6 +321,39 @@ TEST_CASE("what tubes exclude is proven again") {
   }
 }
 
+TEST_CASE("levels that begin at empty, and parameters that a mode knows, leave nothing undecided") {
+  Json study{{"cordon", 1}};
+  study["system"] = Json::parse(R"({"type": "nonlinear", "states": ["h1", "h2"],
+    "inputs": ["pump"], "disturbances": ["w1", "w2"], "noises": ["v1", "v2"],
+    "parameters": {"power": {"lower": 1, "upper": 1}, "leak": {"lower": 0, "upper": 0}},
+    "f": ["h1 + 0.5*power*pump - 0.3*sqrt(h1) + w1",
+          "h2 + 0.3*sqrt(h1) - (0.28 + leak)*sqrt(h2) + w2"],
+    "g": ["h1 + v1", "h2 + v2"],
+    "admissible": {"type": "box", "lower": [0, 0], "upper": [12, 12]},
+    "X0": {"type": "box", "lower": [2, 2], "upper": [6, 6]},
+    "W": {"type": "box", "lower": [-0.01, -0.01], "upper": [0.01, 0.01]},
+    "V": {"type": "box", "lower": [-0.05, -0.05], "upper": [0.05, 0.05]},
+    "modes": [{"name": "weak pump", "parameters": {"power": {"lower": 0.7, "upper": 0.95}}},
+              {"name": "leak", "parameters": {"leak": {"lower": 0.01, "upper": 0.04}}}]})");
+  study["data"]["simulate"] = Json::parse(R"({"steps": 120, "x0": [3.5, 3.6, 1, 0],
+    "input": [{"type": "square", "offset": 1.1, "amplitude": 0.15, "period": 30}],
+    "dropouts": [{"probability": 0.3}],
+    "faults": [{"mode": "weak pump", "from": 30, "to": 69}, {"mode": "leak", "from": 100}]})");
+  study["pipelines"] = {
+      {{"name", "bank"},
+       {"backend", "zonotope"},
+       {"diagnoser",
+        {{"type", "consistency_bank"}, {"observer", "nonlinear"}, {"waiting_time", 15}}}}};
+  for (int seed = 1; seed <= 8; ++seed) {
+    study["data"]["simulate"]["seed"] = seed;
+    const Outcome outcome = BankRun(study).verify();
+    CAPTURE(seed);
+    CAPTURE(outcome.out + outcome.err);
+    CHECK(outcome.code == unharmed);
+    CHECK(found_of(outcome)["exclusions"] == 11);
+  }
+}
+
 TEST_CASE("a bank whose exclusions rest on bounds of errors is not checked") {
   Json study = linear_study();
   study["system"]["modes"].erase(1);

@@ -2,9 +2,11 @@
 #include "study/verification/mode_trajectories.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
+#include "cordon/core/interval.hpp"
 #include "cordon/solvers/outward_questions.hpp"
 #include "study/verification/trajectory_program.hpp"
 
@@ -29,6 +31,20 @@ bool holds(const Box& outer, const Box& inner) {
          (inner.upper.array() <= outer.upper.array()).all();
 }
 
+/// Of boxes their own sides: of what ends at 0, a root is defined up to there.
+Box hull_of(const LineForm& set) {
+  Box hull = outward::interval_hull(set);
+  if (set.lines() > 0 || set.constraints() > 0 || !has_points(hull)) return hull;
+  for (Index i = 0; i < set.dim(); ++i) {
+    double radius = 0;
+    for (Index j = 0; j < set.generators(); ++j)
+      radius = directed::plus(radius, std::abs(set.G(i, j))).upper;
+    hull.lower[i] = std::max(hull.lower[i], directed::plus(set.c[i], -radius).lower);
+    hull.upper[i] = std::min(hull.upper[i], directed::plus(set.c[i], radius).upper);
+  }
+  return hull;
+}
+
 std::vector<Interval> opposite(const std::vector<Interval>& values) {
   std::vector<Interval> all;
   for (const Interval value : values) all.push_back(-value);
@@ -43,8 +59,8 @@ ModeTrajectories::ModeTrajectories(const Model& model, LineForm start,
       start_(std::move(start)),
       admissible_(std::move(admissible)),
       space_(Box::space(start_.dim())),
-      start_hull_(outward::interval_hull(start_)),
-      admissible_hull_(admissible_ ? outward::interval_hull(*admissible_) : space_),
+      start_hull_(hull_of(start_)),
+      admissible_hull_(admissible_ ? hull_of(*admissible_) : space_),
       enclosure_(model) {}
 
 /// The linear model is one of the formulas only as long as the state keeps to its region.
