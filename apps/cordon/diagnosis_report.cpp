@@ -84,11 +84,15 @@ std::string proven_text(const std::vector<FaultBound>& faults, const Labels& lab
   return text;
 }
 
-/// ", leak in [0.006, 0.014]", of the parameters with bounds, which are the last states.
-std::string parameters_text(const Study& study, const Box& estimate) {
+/// ", leak in [0.006, 0.014]", of the parameters that the mode knows by bounds alone, which are the
+/// last states.
+std::string parameters_text(const Study& study, Index mode, const Box& estimate) {
   const Index count = study.model.nonlinear ? study.model.nonlinear->parameters : 0;
   std::string text;
-  for (Index i = estimate.dim() - count; i >= 0 && i < estimate.dim(); ++i) {
+  if (count == 0 || estimate.dim() == 0) return text;
+  const LineForm X0 = bank_of(study)[mode].model.X0;
+  for (Index i = estimate.dim() - count; i < estimate.dim(); ++i) {
+    if (X0.G.row(i).isZero(0)) continue;
     text += fmt::format(", {} in [{:.4g}, {:.4g}]", label_of(study.labels.states, "x", i),
                         estimate.lower[i], estimate.upper[i]);
   }
@@ -143,7 +147,7 @@ Rows timeline(const Study& study, const DiagnosisOutcome& found, std::int64_t& l
     std::string evidence = event.faults.empty() ? evidence_text(event.evidence)
                                                 : proven_text(event.faults, study.labels);
     if (evidence.empty()) evidence = reason_text(event, found.modes.size());
-    if (event.estimate.dim() > 0) evidence += parameters_text(study, event.estimate);
+    if (event.mode >= 0) evidence += parameters_text(study, event.mode, event.estimate);
     rows.push_back({fmt::format("{}", event.k), event_name(event, before), mode, evidence});
     if (seconds > 0) {
       rows.back().insert(rows.back().begin() + 1,
@@ -153,8 +157,10 @@ Rows timeline(const Study& study, const DiagnosisOutcome& found, std::int64_t& l
   return rows;
 }
 
-/// Like the widths of observers: as many digits as it takes to compare.
+/// Like the widths of observers: as many digits as it takes to compare. What rounding makes of 0
+/// is 0.
 std::string number_text(double value) {
+  if (std::abs(value) < 1e-300) return "0";
   if (std::isnan(value)) return "-";
   return std::isinf(value) ? "unbounded" : fmt::format("{:.6g}", value);
 }
