@@ -209,6 +209,21 @@ TEST_CASE("where a mode begins its parameters are new, which excuses and accuses
   CHECK(check.excuses_by_rounding(20, true, 0));
 }
 
+TEST_CASE("a truth that leaves the admissible set is a failed assumption, not a defect") {
+  Json study = with_banks(tanks());
+  study["system"]["admissible"] = {{"type", "box"}, {"lower", {3.9, 0}}, {"upper", {12, 12}}};
+  const Run run(study);
+  CAPTURE(run.outcome.out);
+  CHECK(run.outcome.code == 0);
+  CHECK(run.outcome.out.find("Assumption failed: x_") != std::string::npos);
+  CHECK(run.outcome.out.find("lies outside an admissible set") != std::string::npos);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Json failed = run.pipeline(i)["summary"]["failed_assumption"];
+    CHECK(failed["what"] == "admissible_set");
+    CHECK(excluded_at(run.pipeline(i), "healthy") >= failed["k"].get<int>());
+  }
+}
+
 TEST_CASE("a mode whose formulas are not defined is never excluded, and does not end the others") {
   Json study = with_banks(tanks());
   study["system"]["modes"].push_back(

@@ -236,6 +236,14 @@ bool AssumptionCheck::leaves_modes(const Record& record) const {
   return *record.mode != bank_.nominal && !(*record.mode < 0 && has_fault);
 }
 
+/// Of the true mode, with bounds of its parameters.
+const LineForm* AssumptionCheck::admissible_by_formulas(const Record& record) const {
+  const Index mode = record.truth ? mode_of(record) : -1;
+  if (mode < 0 || !bank_[mode].model.nonlinear) return nullptr;
+  const auto& set = bank_[mode].model.nonlinear->admissible;
+  return set ? &*set : nullptr;
+}
+
 void AssumptionCheck::check_sets(const Record& record) {
   const Index k = record.sample.k;
   for (const auto& [set, from] : assumed_.admissible_sets) {
@@ -243,6 +251,9 @@ void AssumptionCheck::check_sets(const Record& record) {
     if (k >= from && is_left(set, *record.truth, What::admissible_set, k))
       fail(What::admissible_set, k);
   }
+  if (const LineForm* const set = admissible_by_formulas(record);
+      set && !other_ && is_left(*set, *record.truth, What::admissible_set, k))
+    fail(What::admissible_set, k);
   if (!other_ && record.truth && study_.model.nonlinear && misses_invariants(study_.model, record))
     fail(What::invariants, k);
   if (!other_ && assumed_.inputs && clearly_outside(study_.model.U, record.sample.u))

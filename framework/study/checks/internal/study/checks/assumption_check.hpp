@@ -79,6 +79,7 @@ class AssumptionCheck {
 
  private:
   void check_start(const Record& record);
+  const LineForm* admissible_by_formulas(const Record& record) const;  ///< null: there is none
   void check_sets(const Record& record);
   bool is_left(const LineForm& set, const Vector& x, FailedAssumption::What what, Index k,
                Index mode = -1);
