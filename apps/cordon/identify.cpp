@@ -2,7 +2,6 @@
 #include "cordon/study/identify.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <memory>
 #include <optional>
 
@@ -14,6 +13,7 @@
 #include "cordon/experiments/report.hpp"
 #include "cordon/study/data.hpp"
 #include "identified_study.hpp"
+#include "identify_options.hpp"
 #include "interrupt.hpp"
 #include "json_text.hpp"
 #include "new_file.hpp"
@@ -29,39 +29,6 @@ using Status = BoundFactors::Status;
 constexpr std::size_t most_identified = 20'000;
 constexpr double agrees = 1 + 1e-6;  ///< a factor up to this counts as 1: what the solver rounds
 constexpr double shares_of_V[] = {0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 2};
-
-struct IdentifyArguments {
-  std::filesystem::path study, write, figure;
-  std::string scale = "both", train = "100%", margin, pipeline;
-  Index leave_out = 0;
-  bool trade_off = false, json = false;
-};
-
-const std::vector<std::pair<std::string, Scaled>>& scales() {
-  static const std::vector<std::pair<std::string, Scaled>> all{{"both", Scaled::both},
-                                                               {"W", Scaled::disturbances},
-                                                               {"V", Scaled::noises},
-                                                               {"each", Scaled::each}};
-  return all;
-}
-
-Scaled scale_from(const std::string& name) {
-  for (const auto& [known, scaled] : scales())
-    if (known == name) return scaled;
-  throw Error(Errc::invalid, "--scale takes both, W, V or each, not \"" + name + "\"");
-}
-
-/// "70%": 0.7. A number alone could be either.
-double share_from(const std::string& text, const char* option) {
-  double percent = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, percent);
-  const bool is_share = error == std::errc() && std::string(rest, end) == "%";
-  if (!is_share || !(percent > 0) || percent > 100)
-    throw Error(Errc::invalid,
-                std::string(option) + " takes a share, 70% for example, not \"" + text + "\"");
-  return percent / 100;
-}
 
 std::vector<Sample> samples_of(const Study& study) {
   std::vector<Sample> samples;
@@ -95,6 +62,7 @@ struct Identified {
   /// The factor by which the bounds found would have to grow to explain all samples, if there were
   /// others.
   std::optional<BoundFactors> rest;
+  std::optional<BoundFactors> wider;  ///< the same of the bounds with --margin
   std::vector<TradeOff> trade_off;
   std::optional<LeftOutSamples> left_out;  ///< for half of the factor
 };
@@ -105,16 +73,33 @@ std::span<const Sample> trained_part(std::span<const Sample> samples, const std:
   return samples.first(std::max<std::size_t>(1, static_cast<std::size_t>(count)));
 }
 
+/// What was scaled, with what --margin adds.
+BoundFactors with_margin(BoundFactors factors, const IdentifyArguments& arguments) {
+  const double margin = margin_of(arguments);
+  const Scaled scaled = scale_from(arguments.scale);
+  if (scaled != Scaled::noises) factors.disturbances *= 1 + margin;
+  if (scaled != Scaled::disturbances) factors.noises *= 1 + margin;
+  return factors;
+}
+
+/// By which factor the bounds would have to grow to explain all samples.
+BoundFactors on_all(const Model& model, const BoundFactors& found,
+                    const std::vector<Sample>& samples) {
+  return identify_bounds(scaled_model(model, found.disturbances * agrees, found.noises * agrees),
+                         samples);
+}
+
 Identified identified(const Study& study, const std::vector<Sample>& samples,
                       const IdentifyArguments& arguments) {
   const std::span<const Sample> first = trained_part(samples, arguments.train);
   const IdentifyOptions options{scale_from(arguments.scale)};
   Identified result{
-      samples.size(), first.size(), identify_bounds(study.model, first, options), {}, {}, {}};
+      samples.size(), first.size(), identify_bounds(study.model, first, options), {}, {}, {}, {}};
   const BoundFactors& found = result.factors;
   if (found.status == Status::found && first.size() < samples.size()) {
-    result.rest = identify_bounds(
-        scaled_model(study.model, found.disturbances * agrees, found.noises * agrees), samples);
+    result.rest = on_all(study.model, found, samples);
+    if (!arguments.margin.empty())
+      result.wider = on_all(study.model, with_margin(found, arguments), samples);
   }
   if (arguments.leave_out > 0 && found.status == Status::found) {
     const std::atomic<bool>* const stop = stop_on_signals();
@@ -162,15 +147,19 @@ std::string proof_text(const BoundFactors& found) {
                      found.required_by.front(), found.required_by.back());
 }
 
-std::string rest_text(const Identified& result) {
+std::string rest_text(const Identified& result, const std::string& margin) {
   if (!result.rest) return "";
   if (result.rest->status != Status::found)
     return "Whether they explain the rest of the samples was not found.\n";
   if (result.rest->cost <= agrees) return "They explain the rest of the samples, too.\n";
-  return fmt::format(
+  std::string text = fmt::format(
       "They do not explain all samples. For these they would have to grow:\n"
       "Factor  {:.6g}{}\n",
       result.rest->cost, proof_text(*result.rest));
+  if (result.wider && result.wider->status == Status::found)
+    text += fmt::format("With {} more they {}.\n", margin,
+                        result.wider->cost <= agrees ? "do" : "do not either");
+  return text;
 }
 
 std::string left_out_text(const LeftOutSamples& left_out, const Paint& paint) {
@@ -206,7 +195,7 @@ std::string report_text(const Study& study, const Identified& result,
     text += fmt::format("{}  {:.6g}{}\n\n", arguments.scale == "each" ? "Sum of factors" : "Factor",
                         found.cost, proof_text(found));
     text += bounds_text(study, found, paint);
-    text += rest_text(result);
+    text += rest_text(result, arguments.margin);
     if (result.left_out) text += left_out_text(*result.left_out, paint);
   }
   if (result.trade_off.empty()) return text;
@@ -246,6 +235,7 @@ std::string report_json(const Identified& result, const IdentifyArguments& argum
               {"trained", result.trained},
               {"factors", to_json(result.factors)},
               {"all_samples", result.rest ? to_json(*result.rest) : Json(nullptr)}};
+  if (result.wider) report["all_samples_with_margin"] = to_json(*result.wider);
   if (result.left_out) {
     Json& left_out = report["left_out"];
     left_out = {{"enough", result.left_out->is_enough},
@@ -260,14 +250,10 @@ std::string report_json(const Identified& result, const IdentifyArguments& argum
 }
 
 /// The study with these bounds, and what is to be added to those that were scaled.
-void write_bounds(const Study& study, BoundFactors factors, const IdentifyArguments& arguments,
-                  std::string remark) {
-  const double margin = arguments.margin.empty() ? 0 : share_from(arguments.margin, "--margin");
-  const Scaled scaled = scale_from(arguments.scale);
-  if (scaled != Scaled::noises) factors.disturbances *= 1 + margin;
-  if (scaled != Scaled::disturbances) factors.noises *= 1 + margin;
-  if (margin > 0) remark += ", and " + arguments.margin + " is added to them";
-  write_identified(study, factors, remark, arguments.write);
+void write_bounds(const Study& study, const BoundFactors& factors,
+                  const IdentifyArguments& arguments, std::string remark) {
+  if (!arguments.margin.empty()) remark += ", and " + arguments.margin + " is added to them";
+  write_identified(study, with_margin(factors, arguments), remark, arguments.write);
   note(fmt::format("Wrote {}", arguments.write.string()));
 }
 
@@ -293,7 +279,8 @@ Exit searched(const Study& study, const std::vector<Sample>& samples,
                     why);
   }
   const BoundSearch search{
-      study, **with_observer, registry, trained_part(samples, arguments.train), samples, scaled};
+      study,  **with_observer,     registry, trained_part(samples, arguments.train), samples,
+      scaled, margin_of(arguments)};
   const std::atomic<bool>* const stop = stop_on_signals();
   const SearchedBounds found = search_bounds(search, [stop] { return stop->load(); });
   if (arguments.json) {
@@ -377,8 +364,10 @@ CORDON_COMMAND(identify) {
       ->add_option("--write", arguments->write, "Write the study with these bounds to a new file")
       ->option_text("FILE");
   command
-      ->add_option("--margin", arguments->margin,
-                   "Write bounds that are wider by this share, for what the samples have not shown")
+      ->add_option(
+          "--margin", arguments->margin,
+          "Write bounds that are wider by this share, for what the samples have not shown; with "
+          "--train these are tried on all samples, too")
       ->option_text("20%");
   command
       ->add_option("--pipeline", arguments->pipeline,

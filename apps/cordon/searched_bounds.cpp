@@ -61,6 +61,8 @@ SearchedBounds search_bounds(const BoundSearch& search, const std::function<bool
     try_factor(0.5 * found.refuted + 0.5 * found.kept);
   if (found.kept < infinity && search.all.size() > search.samples.size())
     found.fails_at = empty_from(search, search.all, found.kept);
+  if (found.fails_at >= 0 && search.margin > 0)
+    found.wider_fails_at = empty_from(search, search.all, (1 + search.margin) * found.kept);
   return found;
 }
 
@@ -89,10 +91,13 @@ std::string text_of(const SearchedBounds& found, const BoundSearch& search) {
       "estimates hold more than what is possible\n",
       found.kept);
   if (search.all.size() == search.samples.size()) return text;
-  return text +
-         (found.fails_at < 0
-              ? "The rest of the samples leaves estimates, too.\n"
-              : fmt::format("The rest of the samples contradicts it at k = {}.\n", found.fails_at));
+  if (found.fails_at < 0) return text + "The rest of the samples leaves estimates, too.\n";
+  text += fmt::format("The rest of the samples contradicts it at k = {}.\n", found.fails_at);
+  if (search.margin == 0) return text;
+  text += fmt::format("With {:.4g}% more ", 100 * search.margin);
+  return text + (found.wider_fails_at < 0
+                     ? std::string("it leaves estimates, too.\n")
+                     : fmt::format("it does so at k = {}.\n", found.wider_fails_at));
 }
 
 std::string json_of(const SearchedBounds& found, const BoundSearch& search) {
@@ -103,6 +108,7 @@ std::string json_of(const SearchedBounds& found, const BoundSearch& search) {
                                 {"empty_at", found.empty_at}};
   report["kept"] = found.kept < infinity ? nlohmann::ordered_json(found.kept) : nullptr;
   report["fails_at"] = found.fails_at;
+  if (search.margin > 0) report["wider_fails_at"] = found.wider_fails_at;
   return json_text(report);
 }
 

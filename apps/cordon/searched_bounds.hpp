@@ -18,6 +18,7 @@ struct SearchedBounds {
   Index empty_at = -1;     ///< k of that estimate
   double kept = infinity;  ///< with this one none is; ∞: none was found up to 1000
   Index fails_at = -1;     ///< with `kept`: k from which the rest of the samples contradicts it
+  Index wider_fails_at = -1;  ///< the same with the margin added
 };
 
 struct BoundSearch {
@@ -26,6 +27,7 @@ struct BoundSearch {
   const Registry& registry;
   std::span<const Sample> samples, all;  ///< from which the factor comes; on which it is tried
   Scaled scaled;                         ///< not `each`
+  double margin = 0;                     ///< a share of the factor, tried where it fails
 };
 
 /// W(s) = c + s G [-1,1]^g, rows of constraints as they are; V likewise. Factors are doubled or
