@@ -14,11 +14,12 @@ namespace cordon::verification {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::size_t most_entries = 300'000;  ///< of a program
 constexpr double most_seconds = 10;            ///< for all windows of a question
 constexpr std::size_t most_stages = 2000;      ///< that are kept
+constexpr std::size_t most_narrowed = 32;      ///< of them at once
+constexpr int most_narrowings = 8;             ///< for a question
+constexpr double worth_narrowing = 0.999;      ///< a width that it is worth to go on for
 
 Box common_part(const Box& a, const Box& b) {
   return {a.lower.cwiseMax(b.lower), a.upper.cwiseMin(b.upper)};
@@ -99,7 +100,7 @@ std::vector<Sample> ModeTrajectories::samples() const {
 }
 
 std::optional<ModeTrajectories::Window> ModeTrajectories::window(std::size_t first) const {
-  Window made{{}, 0};
+  Window made{{}, 0, {}};
   TrajectoryProgram& program = made.program;
   const Index n = start_.dim();
   for (std::size_t j = first; j < stages_.size(); ++j) {
@@ -107,6 +108,7 @@ std::optional<ModeTrajectories::Window> ModeTrajectories::window(std::size_t fir
     // exact rows say what bounds behind the first ones do, and proofs leave free states out
     const bool by_rows = j > first && model_.is_linear() && !model_.linear.is_descriptor();
     const Index before = made.last, x = made.last = program.columns(by_rows ? space_ : stage.x);
+    made.states.push_back(x);
     TrajectoryProgram::States states{x, -1, Matrix(), -1, stage.outputs.slopes.leftCols(n)};
     if (j > first && stages_[j - 1].successors) {
       const EnclosedRows& rows = *stages_[j - 1].successors;
@@ -133,20 +135,63 @@ std::optional<ModeTrajectories::Window> ModeTrajectories::window(std::size_t fir
   return made;
 }
 
+double ModeTrajectories::seconds_to(Clock::time_point limit) {
+  return std::chrono::duration<double>(limit - Clock::now()).count();
+}
+
 bool ModeTrajectories::proves(const std::function<bool(const Window&, double)>& by,
-                              const Deadline& deadline) const {
+                              const Deadline& deadline) {
   const Clock::time_point own = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(most_seconds)),
                           limit = std::min(own, deadline.value_or(own));
+  for (int round = 0; !none_left_; ++round) {
+    if (proves_by_windows(by, limit)) return true;
+    if (round == most_narrowings || !narrow(limit)) return none_left_;
+  }
+  return true;
+}
+
+bool ModeTrajectories::proves_by_windows(const std::function<bool(const Window&, double)>& by,
+                                         Clock::time_point limit) const {
   for (std::size_t taken = 1;; taken *= 2) {
     const std::size_t first = taken < stages_.size() ? stages_.size() - taken : 0;
-    const double left = std::chrono::duration<double>(limit - Clock::now()).count();
+    const double left = seconds_to(limit);
     if (left <= 0) return false;
     const auto rows = window(first);
     if (!rows) return false;
     if (by(*rows, left)) return true;
     if (first == 0) return false;
   }
+}
+
+/// What formulas leave out of their rows is less over smaller boxes.
+bool ModeTrajectories::narrow(Clock::time_point limit) {
+  if (model_.is_linear()) return false;
+  const std::size_t first = stages_.size() - std::min(stages_.size(), most_narrowed);
+  const auto rows = window(first);
+  if (!rows) return false;
+  bool is_worth_it = false;
+  for (std::size_t j = first; j < stages_.size(); ++j) {
+    Box& x = stages_[j].x;
+    for (Index i = 0; i < x.dim(); ++i) {
+      const double width = x.upper[i] - x.lower[i];
+      if (width == 0) continue;
+      if (seconds_to(limit) <= 0) return false;
+      const Index column = rows->states[j - first] + i;
+      const TrajectoryProgram& program = rows->program;
+      x.upper[i] = std::min(x.upper[i], program.proven_bound(column, 1, seconds_to(limit)));
+      x.lower[i] = std::max(x.lower[i], -program.proven_bound(column, -1, seconds_to(limit)));
+      none_left_ = none_left_ || x.lower[i] > x.upper[i];
+      if (none_left_) return false;
+      is_worth_it = is_worth_it || x.upper[i] - x.lower[i] < worth_narrowing * width;
+    }
+  }
+  for (std::size_t j = first; j < stages_.size(); ++j) {
+    Stage& stage = stages_[j];
+    stage.outputs = enclosure_.outputs(stage.x, stage.sample);
+    if (j + 1 < stages_.size()) stage.successors = enclosure_.successors(stage.x, stage.sample);
+  }
+  return is_worth_it;
 }
 
 bool ModeTrajectories::proves_none(const Deadline& deadline) {
@@ -157,8 +202,7 @@ bool ModeTrajectories::proves_none(const Deadline& deadline) {
   return none_left_;
 }
 
-bool ModeTrajectories::proves_bound(Index i, double sign, double bound,
-                                    const Deadline& deadline) const {
+bool ModeTrajectories::proves_bound(Index i, double sign, double bound, const Deadline& deadline) {
   if (none_left_) return true;
   if (stages_.empty()) return false;
   if ((sign > 0 ? hull().upper[i] : -hull().lower[i]) <= sign * bound) return true;

@@ -15,7 +15,8 @@ namespace cordon::verification {
 
 /// x_s ∈ start, x_{j+1} by the mode's equations with w_j ∈ W, x_j ∈ X_A, outputs with v_j ∈ V, for
 /// all samples from the first one taken. Boxes hold x_j by what came before; that nothing is left
-/// is proven by them, or by linear rows over the last samples: one of them, two, four, …
+/// is proven by them, or by linear rows over the last samples: one of them, two, four, … Where rows
+/// of formulas prove nothing, they bound the last states, and are made anew over smaller boxes.
 class ModeTrajectories {
  public:
   ModeTrajectories(const Model& model, LineForm start, std::optional<LineForm> admissible);
@@ -30,7 +31,7 @@ class ModeTrajectories {
   /// proven.
   bool proves_none(const Deadline& deadline = {});
   /// Is the last x_i of all of them at most, or with `sign` -1 at least, the bound?
-  bool proves_bound(Index i, double sign, double bound, const Deadline& deadline = {}) const;
+  bool proves_bound(Index i, double sign, double bound, const Deadline& deadline = {});
   /// All that were taken; none where too many were.
   std::vector<Sample> samples() const;
   /// Is a linear model used where it is not shown to hold? "" if it is not.
@@ -44,15 +45,25 @@ class ModeTrajectories {
     std::optional<EnclosedRows> successors;  ///< to the next stage; none: it may be anywhere
   };
 
-  /// Of all stages from `first` on, with the column of the last state; nothing: it is too large.
+  using Clock = std::chrono::steady_clock;
+  static double seconds_to(Clock::time_point limit);
+
+  /// Of all stages from `first` on, with the columns of the last state and of all of them; nothing:
+  /// it is too large.
   struct Window {
     TrajectoryProgram program;
     Index last;
+    std::vector<Index> states;
   };
   std::optional<Window> window(std::size_t first) const;
-  /// Asks windows of 1, 2, 4, … stages, until one proves it.
+  /// Asks windows of 1, 2, 4, … stages, until one proves it, and again over smaller boxes.
   bool proves(const std::function<bool(const Window&, double seconds)>& by,
-              const Deadline& deadline) const;
+              const Deadline& deadline);
+  bool proves_by_windows(const std::function<bool(const Window&, double seconds)>& by,
+                         Clock::time_point limit) const;
+  /// Bounds the states of the last stages by their rows, and encloses formulas over these bounds;
+  /// false: they have hardly become narrower, or nothing is left.
+  bool narrow(Clock::time_point limit);
   void watch_region(const Box& x, const Sample& now);
 
   const Model& model_;
