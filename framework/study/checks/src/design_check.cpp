@@ -54,8 +54,9 @@ class DesignCheck {
            "/design/tubes/", i);
   }
 
-  /// What the host once proved it proves again, to the last digit.
-  void proven(const InputDesign& recorded, const ExactSeparation& exact) {
+  /// What the host once proved it proves again, to the last digit where modes are linear: formulas
+  /// are enclosed in doubles, which another processor may add up in another order.
+  void proven(const ModeBank& bank, const InputDesign& recorded, const ExactSeparation& exact) {
     for (std::size_t q = 0; q < exact.pairs.size(); ++q) {
       const PairSeparation& claim = recorded.pairs.at(q);
       const std::string what = fmt::format("what is called proven of pair {}", q + 1);
@@ -63,11 +64,15 @@ class DesignCheck {
       if (claim.disjoint == Answer::no && claim.kappa_lower > -1)
         refute(fmt::format("κ ≥ {} is called proven of a pair that meets", claim.kappa_lower),
                "/exact/pairs/", q);
-      if (claim.disjoint == Answer::yes && claim.kappa_lower > exact.pairs[q].kappa_lower) {
-        refute(fmt::format("κ ≥ {} is called proven, and κ ≥ {} is", claim.kappa_lower,
-                           exact.pairs[q].kappa_lower),
-               "/exact/pairs/", q);
-      }
+      if (claim.disjoint != Answer::yes || claim.kappa_lower <= exact.pairs[q].kappa_lower)
+        continue;
+      std::string what_is = fmt::format("κ ≥ {} is called proven of pair {}, and κ ≥ {} is",
+                                        claim.kappa_lower, q + 1, exact.pairs[q].kappa_lower);
+      if (bank[exact.pairs[q].i].model.is_linear() && bank[exact.pairs[q].j].model.is_linear())
+        refute(std::move(what_is), "/exact/pairs/", q);
+      else if (claim.kappa_lower - exact.pairs[q].kappa_lower >
+               tolerances::reported * (1 + std::min(claim.kappa_lower, most_asked)))
+        open(std::move(what_is));
     }
     for (std::size_t i = 0; i < exact.empty.size(); ++i) {
       same(recorded.empty.at(i), exact.empty[i],
@@ -159,8 +164,8 @@ DesignFindings compare_recorded(const ModeBank& bank, const DesignOutcome& outco
   check.summary(recorded.claimed, outcome.best->separates(), "/design/separates");
   check.status(outcome, exact);
   if (recorded.proven) {
-    check.proven(*recorded.proven, exact);
-    check.summary(recorded.proven_separation, exact.separates(), "/exact/separates");
+    check.proven(bank, *recorded.proven, exact);
+    check.summary(recorded.proven_separation, recorded.proven->separates(), "/exact/separates");
   }
   return std::move(check.found);
 }
