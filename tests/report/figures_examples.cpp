@@ -156,8 +156,10 @@ void check_timeline(const Report& report, const Json& pipeline, int p) {
   for (std::size_t m = 0; m < modes; ++m) CHECK(timeline.rows[m] == pipeline["modes"][m]);
   std::map<std::pair<std::size_t, double>, Timeline::State> told;  // by row and k
   std::map<double, std::string> truth;
+  const double step_length = step_of(report);
   for (const Timeline::Span& span : timeline.spans) {
-    for (double k = span.from; k <= span.to; ++k) {
+    const double last = std::round(span.to / step_length);
+    for (double k = std::round(span.from / step_length); k <= last; ++k) {
       if (span.state == Timeline::State::truth || span.state == Timeline::State::outside) {
         truth[k] = timeline.rows.at(span.row);
       } else {
