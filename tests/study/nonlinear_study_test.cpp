@@ -206,7 +206,7 @@ TEST_CASE("who takes linear models only refuses formulas, and the other way roun
   CHECK(formulas.outcome.code == 2);
   expect_told(formulas,
               "\"prediction_correction\" takes linear models, not formulas; use \"nonlinear\"");
-  expect_told(formulas, "\"milp\" takes linear models, not formulas");
+  expect_told(formulas, "there are no modes to tell apart");
   study["system"] = Json::parse(R"({"type": "lti", "A": [[0.5]], "C": [[1]],
     "X0": {"type": "box", "lower": [-1], "upper": [1]},
     "W": {"type": "box", "lower": [-1], "upper": [1]},

@@ -348,9 +348,9 @@ void add_designs(const RunFiles& files, Report& report) {
     if (auto design = design_of(files, p, system.model.states()))
       designs.push_back(std::move(*design));
   }
-  files.check();                   // what follows computes with the models
-  std::vector<const Model*> bank;  // none of formulas, which no design is for
-  if (system.good && system.model.is_linear()) {
+  files.check();  // what follows computes with the models
+  std::vector<const Model*> bank;
+  if (system.good) {
     bank.push_back(&system.model);
     for (const Mode& mode : system.modes) bank.push_back(&mode.model);
   }
