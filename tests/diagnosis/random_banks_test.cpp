@@ -280,6 +280,8 @@ TEST_CASE("banks of interval matrices, with gaps and without") {
   for (const Differ what : {Differ::actuators, Differ::sensors, Differ::models}) {
     check_banks(what, "", false, true);
     check_banks(what, "", true, true);
+    check_banks(what, "prediction_correction", false, true);
+    check_banks(what, "prediction_correction", true, true);
   }
 }
 TEST_CASE("estimates in place of residuals") {
