@@ -192,6 +192,17 @@ bool is_answer(const ModeBank& bank, const Params& params, double epsilon, Desig
   return false;
 }
 
+/// How the search went.
+template <class Found>
+void tell_search(const Found& found, DesignOutcome& outcome) {
+  outcome.stopped = found.stopped;
+  outcome.reason = found.reason;
+  outcome.suggestion = found.suggestion;
+  outcome.nodes = found.nodes;
+  outcome.programs = found.programs;
+  outcome.facets = found.facets;
+}
+
 /// An input was found, and is not shown to be one for the modes.
 DesignOutcome without_proof(DesignOutcome outcome, const std::string& why) {
   outcome.status = DesignStatus::unknown;
@@ -270,12 +281,7 @@ TubeDesigner::OneHorizon TubeDesigner::design_formulas(DesignOutcome outcome,
                    : found.best     ? DesignStatus::feasible
                                     : DesignStatus::unknown;
   if (found.is_optimal) outcome.lower_bound = 0;
-  outcome.stopped = found.stopped;
-  outcome.reason = std::move(found.reason);
-  outcome.suggestion = std::move(found.suggestion);
-  outcome.nodes = found.nodes;
-  outcome.programs = found.programs;
-  outcome.facets = found.facets;
+  tell_search(found, outcome);
   outcome.best = std::move(found.best);
   const bool is_one = outcome.best && is_answer(bank(), params_, outcome.epsilon, outcome);
   return {std::move(outcome), is_one};
@@ -304,12 +310,7 @@ TubeDesigner::OneHorizon TubeDesigner::design_at(Index horizon, const DesignOutc
   outcome.status = found.status;
   outcome.lower_bound = found.lower_bound;
   outcome.restriction = std::move(found.restriction);
-  outcome.stopped = found.stopped;
-  outcome.reason = std::move(found.reason);
-  outcome.suggestion = std::move(found.suggestion);
-  outcome.nodes = found.nodes;
-  outcome.programs = found.programs;
-  outcome.facets = found.facets;
+  tell_search(found, outcome);
   if (!found.u) return {std::move(outcome), false};
   // However late it is: an input that was found is proven.
   const Vector u = inside_bounds(problem->U, std::move(*found.u));
