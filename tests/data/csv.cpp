@@ -259,7 +259,12 @@ TEST_CASE("the true modes may be recorded") {
   const auto data = open_data(study(file.path()));
   for (const Index mode : {0, 1, -1, 2}) CHECK(data->next()->mode == mode);
   CHECK_FALSE(data->next());
-  CHECK_FALSE(open_data(study_of(file.path()))->next()->mode);  // not asked for
+  CHECK_FALSE(open_data(study_of(file.path()))->next()->mode);       // not asked for
+  const File by_run("u,y,state of health\n1,2,0\n1,2,-1\n1,2,2\n");  // numbers in the bank
+  const auto recorded = open_data(study(by_run.path()));
+  for (const Index mode : {0, -1, 2}) CHECK(recorded->next()->mode == mode);
+  const File beyond("u,y,state of health\n1,2,3\n");
+  CHECK_THROWS_AS(open_data(study(beyond.path())), InputError);
   const auto first_problem = [&](const std::string& bytes) {
     const File bad(bytes);
     try {

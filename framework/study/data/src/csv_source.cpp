@@ -240,8 +240,8 @@ std::optional<Vector> CsvSource::numbers(const CsvRow& row, const Columns& colum
   return good ? std::optional<Vector>(std::move(values)) : std::nullopt;
 }
 
-/// The mode of a row, -1 for an empty field: outside the bank; nothing if it is not recorded, or
-/// after reporting what is wrong.
+/// The mode of a row, by its name or else its number in the bank, -1 for an empty field: outside
+/// the bank; nothing if it is not recorded, or after reporting what is wrong.
 std::optional<Index> CsvSource::mode(const CsvRow& row) {
   if (mode_.at.empty() || mode_.at.front() == nowhere) return std::nullopt;
   const std::string& field = row.fields[mode_.at.front()];
@@ -251,6 +251,9 @@ std::optional<Index> CsvSource::mode(const CsvRow& row) {
     return m == field || m == name || no_formula(m) == field;
   });
   if (found != modes_.end()) return static_cast<Index>(found - modes_.begin());
+  for (Index index = -1; index < std::ssize(modes_); ++index) {
+    if (name == std::to_string(index)) return index;  // as runs write it
+  }
   report("/data/csv/file", row.line,
          "column " + json::in_quotes(mode_.names.front()) + ": there is no mode " +
              json::in_quotes(name),
