@@ -19,9 +19,10 @@ constexpr double worth_it = 1e-2;         ///< of the cost
 constexpr int most_rounds = 60;
 constexpr int most_without_answer = 12;  ///< proposals in a row, none of which separates
 constexpr double least_margin = 1e-3;    ///< of κ, asked for beyond ε where a proposal was none
-/// Where modes are linearised at first: the start, then at these shares of the half widths from the
-/// middle of the input set. At a point where derivatives vanish no linear model tells modes apart.
-constexpr double begin_at[] = {0, 0.5, -0.5, 1, -1};
+/// Other points where modes are linearised at first, by shares of the half widths from the middle
+/// of the input set: at one where derivatives vanish no linear model tells modes apart.
+constexpr double begin_at[] = {0.5, -0.5, 1, -1};
+constexpr double enough_left = 0.75;   ///< of the time, for another descent where an input is known
 constexpr double seconds_each = 0.05;  ///< of what is left, for one linear problem
 
 class Successive {
@@ -31,25 +32,35 @@ class Successive {
         search_(search),
         watch_(watch),
         epsilon_(problem.params.real("epsilon")),
-        half_width_(problem.U.G.cwiseAbs().rowwise().sum()),
-        about_(problem.start) {}
+        seconds_(watch.left()),
+        half_width_(problem.U.G.cwiseAbs().rowwise().sum()) {}
 
   FormulaDesign run() {
+    for (const Vector& start : problem_.starts) descend_from(start);
     for (const double share : begin_at) {
-      about_ = share == 0 ? problem_.start : Vector(problem_.U.c + share * half_width_);
-      if (!in_input_set(about_)) continue;
-      begin();
-      if (found_.best || watch_.over()) break;
+      if (problem_.U.b.size() > 0) break;  // no box, where such points may not be allowed
+      if (found_.best && watch_.left() < enough_left * seconds_) break;
+      descend_from(problem_.U.c + share * half_width_);
     }
     return conclude();
   }
 
  private:
-  /// From the input about which modes are linearised at first.
-  void begin() {
+  /// Keeps what it finds if that is cheaper than what is known.
+  void descend_from(const Vector& start) {
+    if (watch_.over() || found_.is_optimal) return;
+    best_.reset();
+    about_ = start;
     radius_ = 2;
     margin_ = 0;
     without_answer_ = 0;
+    descend();
+    if (best_ && (!found_.best || best_->cost < found_.best->cost)) found_.best = std::move(best_);
+    found_.is_optimal = found_.best && !(found_.best->cost > 0);
+    found_.stopped = watch_.over();
+  }
+
+  void descend() {
     std::optional<SeparationProblem> about = linear_problem(about_);
     if (!about) return;
     if (auto first = judged(about_); first && is_answer(*first)) accept(std::move(*first), about_);
@@ -61,14 +72,8 @@ class Successive {
     }
   }
 
-  /// Where the input set is no box its corners are not known.
-  bool in_input_set(const Vector& u) const {
-    return u == problem_.start || problem_.U.b.size() == 0;
-  }
-
   bool goes_on() {
-    found_.stopped = watch_.over();
-    return !found_.stopped && radius_ >= smallest_region && !found_.is_optimal &&
+    return !watch_.over() && radius_ >= smallest_region && !(best_ && !(best_->cost > 0)) &&
            without_answer_ < most_without_answer;
   }
 
@@ -96,7 +101,7 @@ class Successive {
     found_.nodes += result.nodes;
     found_.programs += result.programs;
     found_.facets += result.facets;
-    if (!result.u && !found_.best) found_.reason = result.reason;
+    if (!result.u && !best_) found_.reason = result.reason;
     return std::move(result.u);
   }
 
@@ -122,8 +127,7 @@ class Successive {
   }
 
   void accept(InputDesign design, const Vector& u) {
-    found_.is_optimal = !(design.cost > 0);
-    found_.best = std::move(design);
+    best_ = std::move(design);
     about_ = u;
     margin_ /= 2;
     without_answer_ = 0;
@@ -132,8 +136,8 @@ class Successive {
   void take(const Vector& u) {
     std::optional<InputDesign> design = judged(u);
     const bool answers = design && is_answer(*design);
-    if (answers && (!found_.best || design->cost < found_.best->cost)) {
-      const bool much = !found_.best || design->cost < found_.best->cost * (1 - worth_it);
+    if (answers && (!best_ || design->cost < best_->cost)) {
+      const bool much = !best_ || design->cost < best_->cost * (1 - worth_it);
       accept(std::move(*design), u);
       if (!much) radius_ /= 4;
     } else if (answers) {
@@ -141,7 +145,7 @@ class Successive {
     } else {
       margin_ = std::max(2 * margin_, least_margin);
       ++without_answer_;
-      if (found_.best || !design) {
+      if (best_ || !design) {
         radius_ /= 2;
       } else {
         about_ = u;
@@ -156,7 +160,7 @@ class Successive {
       return ++without_answer_ < most_without_answer;
     }
     radius_ /= 2;
-    return found_.best.has_value();
+    return best_.has_value();
   }
 
   FormulaDesign conclude() {
@@ -181,9 +185,11 @@ class Successive {
   const LinearSearch& search_;
   const Watch& watch_;
   double epsilon_, margin_ = 0, radius_ = 2;  ///< of the half widths: all of the input set
+  double seconds_;                            ///< at the beginning
   Vector half_width_, about_, linear_about_;
   int without_answer_ = 0;
-  FormulaDesign found_;
+  std::optional<InputDesign> best_;  ///< of this descent
+  FormulaDesign found_;              ///< of all
 };
 
 }  // namespace

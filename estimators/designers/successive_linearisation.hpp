@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "designers/tube_designer.hpp"
 #include "designers/watch.hpp"
@@ -18,7 +19,7 @@ struct FormulaProblem {
   const Params& params;
   Index horizon = 1;
   InputSequences U;
-  Vector start;  ///< the input that modes are linearised about at first
+  std::vector<Vector> starts;  ///< inputs of U that modes are linearised about at first
 };
 
 /// Solves a linear problem within some seconds.
@@ -29,8 +30,10 @@ using LinearSearch = std::function<SearchResult(const SeparationProblem&, double
 /// under the first input alone: the modes are enclosed under the new one, and it counts if that
 /// separates them, with κ ≥ ε, by which it does so for all states, disturbances and noises that the
 /// formulas allow. Then the next problem is solved about it: a trust region about the best input
-/// shrinks where the proposal was none, and ends the search below a thousandth of the input set.
-/// `best`: the cheapest that was found; nothing is known of cheaper ones, nor where none was found.
+/// shrinks where the proposal was none, and ends the descent below a thousandth of the input set.
+/// There is one descent from every start, and from other points of a box as long as three quarters
+/// of the time are left or nothing is found. `best`: the cheapest that was found; nothing is known
+/// of cheaper ones, nor where none was found.
 struct FormulaDesign {
   std::optional<InputDesign> best;
   bool is_optimal = false;  ///< it costs nothing

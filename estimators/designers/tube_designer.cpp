@@ -264,13 +264,13 @@ TubeDesigner::OneHorizon TubeDesigner::design_formulas(DesignOutcome outcome,
                                                        DesignControl& control) const {
   const Index horizon = outcome.horizon;
   const InputSequences U = inputs_from(bank(), params_, horizon);
-  Vector start = first_guess(horizon, U);
+  std::vector<Vector> starts{first_guess(horizon, U)};
   if (shorter && shorter->best) {
-    const Matrix& u = shorter->best->u;
-    start.head(u.size()) = stacked(u);
+    starts.insert(starts.begin(), starts.front());
+    starts.front().head(shorter->best->u.size()) = stacked(shorter->best->u);
   }
   FormulaDesign found = linearise_successively(
-      {bank(), backend(), params_, horizon, U, std::move(start)},
+      {bank(), backend(), params_, horizon, U, std::move(starts)},
       [&](const SeparationProblem& problem, double seconds) {
         SearchResult result = search(problem, seconds, control);
         if (result.u) result.u = inside_bounds(problem.U, std::move(*result.u));
