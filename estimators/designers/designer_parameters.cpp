@@ -99,10 +99,10 @@ void check_sets(const DesignerContext& context, std::vector<Diagnostic>& problem
     const std::pair<const char*, const LineForm*> sets[] = {
         {"X0", &mode.model.X0}, {"W", &mode.model.W}, {"V", &mode.model.V}};
     for (const auto& [name, set] : sets) {
-      if (!mode.model.is_linear() && is_bounded(*set) != Answer::yes) {
+      if ((!mode.model.is_linear() || mode.model.region) && is_bounded(*set) != Answer::yes) {
         problems.push_back(
             {"",
-             fmt::format("{} of mode \"{}\" is not bounded, and formulas are followed from "
+             fmt::format("{} of mode \"{}\" is not bounded, and states are followed from "
                          "bounds of it",
                          name, mode.name),
              "give a bounded set"});

@@ -124,11 +124,13 @@ std::optional<InputDesign> judge(const LinearBank& bank, const SetBackend& backe
   InputDesign design;
   design.u = by_time(u, problem.inputs);
   design.cost = problem.cost.at(u);
-  const auto is_linear = [&](Index mode) { return bank.bank[mode].model.is_linear(); };
+  const auto is_known = [&](Index mode) {
+    return bank.bank[mode].model.is_linear() && !bank.bank[mode].model.region;
+  };
   for (const PairProgram& pair : problem.pairs) {
     if (stop()) return std::nullopt;
     PairSeparation found = separation(pair, u);
-    if (found.disjoint == Answer::no && !(is_linear(pair.i) && is_linear(pair.j))) {
+    if (found.disjoint == Answer::no && !(is_known(pair.i) && is_known(pair.j))) {
       found.disjoint = Answer::unknown;
       found.why = {};
     }

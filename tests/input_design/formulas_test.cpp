@@ -111,5 +111,5 @@ TEST_CASE("a level that may not be known from below is refused with the set") {
       "U": {"type": "box", "lower": [-1], "upper": [1]},
       "modes": [{"name": "slow", "parameters": {"a": 0.5}}]})json",
                                 R"({"type": "facets", "horizon": 2})"),
-                       doctest::Contains("is not bounded, and formulas are followed"), InputError);
+                       doctest::Contains("is not bounded, and states are followed"), InputError);
 }

@@ -121,11 +121,28 @@ TEST_CASE("linear modes, outputs that are missing, and the observers of descript
   }
 }
 
-TEST_CASE("a second change before the reset is not held against what rests on one") {
+TEST_CASE("a second change before the reset is told as an assumption that fails") {
   Json study = with_followed(tank(), "nonlinear");
   study["data"]["simulate"]["faults"] = Json::parse(
       R"([{"mode": "leak", "from": 10, "to": 10}, {"mode": "sensor", "from": 11, "to": 30}])");
+  study["data"]["simulate"]["seeds"] = 20;
   const Run run(study);
   CAPTURE(run.outcome.out);
   CHECK(run.outcome.code == 0);
+  CHECK(count(run.outcome.out, "lies outside the restart set") >= 1);
+}
+
+TEST_CASE("static rows hold for the mode of their time, so that changes are not followed") {
+  Json study = Json::parse(R"({"cordon": 1,
+    "system": {"type": "descriptor", "E": [[1, 0], [0, 0]], "A": [[0.5, 0], [1, -1]],
+      "B": [[1], [0]], "Bw": [[1, 0], [0, 1]], "C": [[1, 0], [0, 1]],
+      "X0": {"type": "box", "lower": [-1, -1], "upper": [1, 1]},
+      "W": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]},
+      "V": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]},
+      "modes": [{"name": "weak", "actuator": [0.4]}]},
+    "data": {"simulate": {"steps": 10, "input": [{"type": "constant", "offset": 1}]}}})");
+  const Run refused(with_followed(study, "descriptor", {"line_zonotope"}));
+  CHECK(refused.outcome.code == 2);
+  CHECK(refused.outcome.out.find("/pipelines/0/diagnoser/changes") != std::string::npos);
+  CHECK(refused.outcome.out.find("takes systems without E") != std::string::npos);
 }

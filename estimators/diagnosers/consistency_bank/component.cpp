@@ -286,9 +286,21 @@ std::vector<Diagnostic> observer_problems(const DiagnoserContext& context, const
   return problems;
 }
 
+/// What follows the states of a mode is known by an observer's prediction, which holds the static
+/// rows of its mode, too, and the mode may be another one by then.
+void check_changes(const DiagnoserContext& context, const Params& params,
+                   std::vector<Diagnostic>& problems) {
+  if (params.text("changes") == "restart") return;
+  const auto has_rows = [](const Mode& mode) { return mode.model.linear.is_descriptor(); };
+  if (std::ranges::any_of(context.bank.modes, has_rows))
+    problems.push_back({"/changes", "\"followed\" takes systems without E",
+                        "leave it out, and give a \"restart_set\" if the backend needs one"});
+}
+
 std::vector<Diagnostic> check_consistency_bank(const DiagnoserContext& context,
                                                const Params& params) {
   std::vector<Diagnostic> problems = observer_problems(context, params);
+  check_changes(context, params, problems);
   if (params.has("restart_set")) {
     const LineForm& set = params.set_form("restart_set");
     const std::size_t before = problems.size();

@@ -142,7 +142,8 @@ void expect_region(const Model& model, const Matrix& u) {
   const CarriedZonotope W(model.W, "W");
   CarriedZonotope x(model.X0, "X0");
   const auto leaves = [](const Box& X, const Box& of) {
-    return (X.lower.array() < of.lower.array()).any() || (X.upper.array() > of.upper.array()).any();
+    return !((X.lower.array() >= of.lower.array()).all() &&
+             (X.upper.array() <= of.upper.array()).all());
   };
   for (Index k = 0; k <= last; ++k) {
     const bool counts = k < last || region.nonlinear_outputs;

@@ -165,9 +165,13 @@ void AssumptionCheck::step(const Record& record) {
 }
 
 void AssumptionCheck::restarted() {
-  if (other_ || !assumed_.restart_set || !last_ || !last_->truth) return;
-  const Index k = last_->sample.k;
-  if (clearly_outside(*assumed_.restart_set, *last_->truth)) fail(What::restart_set, k);
+  if (assumed_.restart_set) restarted_from(*assumed_.restart_set);
+}
+
+void AssumptionCheck::restarted_from(const LineForm& set) {
+  if (other_ || !last_ || !last_->truth) return;
+  if (is_empty(set) == Answer::yes || clearly_outside(set, *last_->truth))
+    fail(What::restart_set, last_->sample.k);
 }
 
 void AssumptionCheck::begun_anew_from(const LineForm& set) {

@@ -90,7 +90,7 @@ ExactSeparation verify_design(const ModeBank& bank, const DesignOutcome& outcome
       const auto at = as_size(mode);
       if (!linear.models[at]) return ExactEmptiness{Answer::unknown, 0, linear.reasons[at]};
       models.push_back(&*linear.models[at]);
-      exact = exact && bank[mode].model.is_linear();
+      exact = exact && bank[mode].model.is_linear() && !bank[mode].model.region;
     }
     if (stop && stop->load()) return ExactEmptiness{Answer::unknown, 0, "interrupted"};
     const LineForm rows = verification::common_runs(models, experiment);

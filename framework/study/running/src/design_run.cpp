@@ -160,7 +160,8 @@ class DesignRun final : public PipelineRun {
       if (other < 0 || claim.disjoint != Answer::yes || !open || contradicted_[{claim.i, claim.j}])
         continue;
       if (!last.modes[static_cast<std::size_t>(other)].candidate) continue;
-      if (!bank_[other].model.is_linear()) continue;  // its tube is enclosed only
+      const Model& model = bank_[other].model;
+      if (!model.is_linear() || model.region) continue;  // its tube is enclosed only
       const LineForm tube = verification::output_tube(
           bank_[other].model, {design.best->u, design.last_output_only, design.admissible_set});
       const Matrix counted = design.last_output_only ? Matrix(shown.bottomRows(1)) : shown;

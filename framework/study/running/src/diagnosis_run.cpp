@@ -92,8 +92,8 @@ class DiagnosisRun final : public PipelineRun {
     });
     if (failed()) return;
     if (found_.steps == 0 && record.mode) found_.truth_known = true;
-    if (diagnosis->reset && diagnosis->restarts.empty()) check_->restarted();
     score_->step(record.mode, *diagnosis);
+    if (diagnosis->reset) check_restart(*diagnosis, record.mode);
     if (Results* const results = writer())
       results->diagnosis({*diagnosis, record.mode, faults, diagnoser_->step_us()});
     ++found_.steps;
@@ -108,6 +108,15 @@ class DiagnosisRun final : public PipelineRun {
       monitored_ = std::move(*diagnosis);
     }
     step_us_.add(diagnoser_->step_us());
+  }
+
+  /// Sets that the diagnoser tells hold the state if the mode has changed once.
+  void check_restart(const Diagnosis& diagnosis, const std::optional<Index>& mode) {
+    if (diagnosis.restarts.empty()) {
+      check_->restarted();
+    } else if (mode && *mode >= 0 && score_->changed_twice()) {
+      check_->restarted_from(diagnosis.restarts.at(static_cast<std::size_t>(*mode)));
+    }
   }
 
   static Box hull_of(const std::optional<Enclosure>& estimate) {

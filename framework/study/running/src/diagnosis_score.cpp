@@ -47,13 +47,8 @@ void DiagnosisScore::step(const std::optional<Index>& truth, const Diagnosis& no
     ++false_alarms_;
   if (segment_) judge_segment(now);
   judge_exclusions(now);
-  if (now.reset) changed_twice_ = !now.restarts.empty() && (changed_twice_ || changes_twice(now));
+  changed_twice_ = previous_from_ > now.since;
   before_.emplace(now);
-}
-
-/// Has the mode changed more than once since the last reset?
-bool DiagnosisScore::changes_twice(const Diagnosis& now) const {
-  return previous_from_ > now.since;
 }
 
 void DiagnosisScore::finish() {
@@ -98,7 +93,6 @@ bool DiagnosisScore::throughout(Index mode, Index since) const {
 
 // Modes that are no candidates at the first step are none by assumption, without proof.
 void DiagnosisScore::judge_exclusions(const Diagnosis& now) {
-  if (changed_twice_) return;  // what is said rests on sets that do not hold the state
   const Index since = since_of(now);
   for (std::size_t j = 0; j < now.modes.size() && !excluded_; ++j) {
     const auto mode = static_cast<Index>(j);

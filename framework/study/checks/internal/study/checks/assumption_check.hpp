@@ -57,8 +57,10 @@ class AssumptionCheck {
   void begin_run(std::int64_t seed_offset);
   /// Records come in order; to be called before what is said at this time is judged.
   void step(const Record& record);
-  /// The diagnoser has begun anew at the last record.
+  /// The diagnoser has begun anew at the last record, from its restart set.
   void restarted();
+  /// Or from a set that holds the state under an assumption that has failed, as that of one change.
+  void restarted_from(const LineForm& set);
   /// An observer has begun anew from this set with the last record.
   void begun_anew_from(const LineForm& set);
 

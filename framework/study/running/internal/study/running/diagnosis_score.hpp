@@ -39,6 +39,8 @@ class DiagnosisScore {
 
   std::int64_t false_alarms() const { return false_alarms_; }
   bool wrong_mode() const { return wrong_mode_; }
+  /// Has the mode changed more than once since `Diagnosis::since` of the last step?
+  bool changed_twice() const { return changed_twice_; }
   /// The first exclusion that contradicts the truth. `seed_offset` is left to the caller.
   const std::optional<TrueModeExcluded>& true_mode_excluded() const { return excluded_; }
 
@@ -47,7 +49,6 @@ class DiagnosisScore {
   void judge_segment(const Diagnosis& now);
   void judge_exclusions(const Diagnosis& now);
   bool throughout(Index mode, Index since) const;
-  bool changes_twice(const Diagnosis& now) const;
 
   std::function<void(const DiagnosisSegment&)> ended_;
   std::optional<DiagnosisSegment> segment_;
