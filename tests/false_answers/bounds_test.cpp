@@ -22,6 +22,40 @@ TEST_CASE("A strip is not bounded") {
   }
 }
 
+TEST_CASE("A polygon with a ray") {
+  const Matrix H{{0.49999999999999994, 0.8660254037844387},
+                 {0.8660254037844387, -0.49999999999999994},
+                 {0, -1},
+                 {1, 0},
+                 {0, 1},
+                 {-1, 0}};
+  const LineForm X =
+      half_spaces(H, Vector{{1.3660253171818983, 0.36602545378443874, 1, 1, 1, 1}}, 16);
+  CHECK(is_bounded(X) == Answer::yes);
+  expect_inside(X, Vector{{0, 0}});
+  std::vector<Certificate> why;
+  const Box hull = interval_hull(X, &why);
+  for (Index i = 0; i < 2; ++i) {
+    const Vector e = Vector::Unit(2, i);
+    const std::size_t k = 2 * exact_proof::size_of(i);
+    CHECK(hull.upper[i] <= 1 + 1e-12);
+    CHECK(hull.lower[i] >= -1 - 1e-12);
+    CHECK(exact_proof::proves_support(X, e, hull.upper[i], why[k]));
+    CHECK(exact_proof::proves_support(X, -e, -hull.lower[i], why[k + 1]));
+  }
+}
+
+TEST_CASE("A segment with a ray") {
+  const LineForm X = make_zonotope(Vector{{0, 0}}, Matrix{{-.00008}, {.00933}});
+  CHECK(is_bounded(X) == Answer::yes);
+  expect_hull(X, {Vector{{-.00008, -.00933}}, Vector{{.00008, .00933}}});
+  expect_outside(X, Vector{{-.00016, .01866}});
+}
+
+TEST_CASE("A least value outside the box") {
+  expect_hull(both(segment(-1, 1), segment(-3, 0)), {Vector{{-1}}, Vector{{0}}});
+}
+
 TEST_CASE("The box of an unbounded set") {
   const LineForm X = make_box({Vector{{-1, -infinity}}, Vector{{1, infinity}}});
   expect_hull(X, {Vector{{-1, -infinity}}, Vector{{1, infinity}}});

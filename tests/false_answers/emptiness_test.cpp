@@ -93,6 +93,16 @@ TEST_CASE("Dependent rows and any failure") {
 
 TEST_CASE("Apart by five millionths") { expect_empty(both(segment(-1, 1), segment(1.000005, 3))); }
 
+TEST_CASE("Between 0 and 6e-8") {
+  const Matrix H{{1, 1},  {1, -1}, {-1, 1}, {-1, -1}, {1, 0}, {0, 1},
+                 {0, -1}, {-1, 0}, {0, 1},  {-1, 0},  {1, 0}};
+  const Vector h{{-13.626037500000011, 14.829706875000008, -14.224500059337577, 14.714999990399326,
+                  0.5984624999999967, -14.224500000000008, 14.715000000000012,
+                  -5.666114613038476e-8, 0, 0, 0}};
+  expect_empty(half_spaces(H, h, 32));
+  expect_not_empty(half_spaces(H.topRows(8), h.head(8), 32));
+}
+
 TEST_CASE("A flat set is a set") {
   const LineForm X = make_zonotope(Vector{{.5, 0}}, Matrix{{.5}, {0}});
   expect_not_empty(X);

@@ -79,6 +79,14 @@ TEST_CASE("A set that comes one step late") {
   expect_outside(X0, x1);
 }
 
+TEST_CASE("A triangle cut out of a square") {
+  const Matrix H{{-.70613882, -.45589431}, {.70807342, -.45464871}, {0, .76515026}};
+  const LineForm X =
+      both(make_box(cube(2, 1)), half_spaces(H, Vector{{-.04178256, .45969769, .35614825}}, 16));
+  expect_outside(X, Vector{{0, 0}});
+  expect_inside(X, Vector{{.35425774, .14104826}});
+}
+
 TEST_CASE("Facets of a cone that are missing") {
   const Matrix g{
       {.5, -.5, .47213, -.47213}, {1, 1, .94423, .94423}, {-.4561, -.51431, .48569, .43067}};

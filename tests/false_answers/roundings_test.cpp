@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// docs/false_answers.md: intervals that lose a number to rounding.
+// docs/false_answers.md: intervals that lose a number, to rounding or else.
 #include <functional>
 
 #include "asking.hpp"
 #include "cordon/formulas/elementary.hpp"
+#include "cordon/formulas/evaluator.hpp"
 #include "cordon/sets/interval.hpp"
+#include "formulas/compiled.hpp"
 
 using namespace cordon;
 using namespace cordon::false_answers;
@@ -49,6 +51,22 @@ TEST_CASE("0.1 times 0.1") {
   expect_enclosed(square, [&](const SetBackend& backend) {
     return backend.affine_map(backend.point(Vector{{a}}), Matrix{{a}}, Vector{{0}});
   });
+}
+
+TEST_CASE("A product that is zero") {
+  const auto product = test::compiled({"x", "y"}, {"x*y"}, 0);
+  formulas::Evaluator evaluator(product, Rounding::outward, formulas::Undefined::refused);
+  // what is kept of a box holds its part of both axes
+  const auto kept = [&](Interval x, Interval y) {
+    std::vector<Interval> box{x, y};
+    CHECK(evaluator.contract(box, 0, {0, 0}));
+    return box;
+  };
+  CHECK(kept({-1, 1}, {-1, 1}) == std::vector<Interval>{{-1, 1}, {-1, 1}});
+  CHECK(kept({-.1, 1}, {-1, 1}) == std::vector<Interval>{{-.1, 1}, {-1, 1}});
+  const std::vector<Interval> above = kept({-1, 1}, {.5, 1});
+  CHECK(above[0].contains(0));
+  CHECK(above[1] == Interval{.5, 1});
 }
 
 TEST_CASE("The root of 2") {
