@@ -6,45 +6,19 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
-#include "cordon/invariant/schur.hpp"
-#include "cordon/invariant/zonotope_enclosure.hpp"
 #include "gains/h_infinity_norm.hpp"
+#include "gains/rounded_products.hpp"
 
 namespace cordon::estimators {
 
 namespace {
-
-/// A product of matrices of which the second is off by at most `error`, and by how much it is off
-/// itself.
-struct Computed {
-  Matrix value, error;
-};
-Computed times(const Matrix& A, const Computed& B) {
-  Matrix error = rounding::product_error(A, B.value) + linalg::product(A.cwiseAbs(), B.error);
-  return {linalg::product(A, B.value), error * (1 + 2 * rounding::gamma(A.cols() + 2))};
-}
-Computed exactly(const Matrix& B) { return {B, Matrix::Zero(B.rows(), B.cols())}; }
-
-/// [Eθ, Bw G_W, -L Dv G_V].
-Computed disturbances(const Model& model, const Matrix& L, const Matrix& theta) {
-  const LinearModel& m = model.linear;
-  const Computed w = times(m.Bw, exactly(invariant::enclosing_zonotope(model.W, "W").G));
-  const Computed v = times(L, times(m.Dv, exactly(invariant::enclosing_zonotope(model.V, "V").G)));
-  Computed all = exactly(Matrix::Zero(m.states(), theta.cols() + w.value.cols() + v.value.cols()));
-  if (theta.cols() > 0) all.value.leftCols(theta.cols()) = theta;
-  all.value.middleCols(theta.cols(), w.value.cols()) = w.value;
-  all.error.middleCols(theta.cols(), w.value.cols()) = w.error;
-  all.value.rightCols(v.value.cols()) = -v.value;
-  all.error.rightCols(v.value.cols()) = v.error;
-  return all;
-}
 
 /// At least ‖A‖₂ for A ≥ 0.
 double norm_of_error(const Matrix& A) {
   return A.norm() * (1 + rounding::gamma(A.size() + 4)) + rounding::tiny;
 }
 
-NormBounds norm_of(const invariant::ClosedLoop& closed, const Computed& B) {
+NormBounds norm_of(const invariant::ClosedLoop& closed, const Rounded& B) {
   if (closed.schur != Answer::yes) return {closed.schur == Answer::no ? infinity : 0, infinity};
   const double A_error = closed.error.isZero(0) ? 0 : norm_of_error(closed.error);
   return h_infinity_norm(closed.value, B.value, A_error,
@@ -66,14 +40,30 @@ Matrix shown_outputs(const LinearModel& model) {
   return C;
 }
 
-GainCertificate certify(const Model& model, const Matrix& L, const Matrix& theta) {
+invariant::ClosedLoop loop_of_errors(const LinearModel& model, const Matrix& L, GainForm form) {
+  const Rounded C = shown_errors(model, form);
+  if (form == GainForm::predictor) return invariant::closed_loop(model.A, L, C.value);
+  const Rounded loop = less(exactly(model.A), times(L, C));
+  invariant::ClosedLoop known;
+  known.value = loop.value;
+  known.error = loop.error;
+  if (known.value.allFinite() && known.error.allFinite())
+    known.radius = invariant::radius_bounds(known.value, known.error);
+  if (known.radius.upper < 1) known.schur = Answer::yes;
+  if (known.radius.lower > 1) known.schur = Answer::no;
+  if (((known.value - known.error).array() >= 0).all()) known.nonnegative = Answer::yes;
+  if (!((known.value + known.error).array() >= 0).all()) known.nonnegative = Answer::no;
+  return known;
+}
+
+GainCertificate certify(const Model& model, const Matrix& L, const Matrix& theta, GainForm form) {
   GainCertificate certificate;
-  const invariant::ClosedLoop known =
-      invariant::closed_loop(model.linear.A, L, mean_outputs(model.linear));
+  const invariant::ClosedLoop known = loop_of_errors(model.linear, L, form);
   certificate.spectral_radius = known.radius.upper;
   certificate.monotone = known.nonnegative;
   try {
-    const NormBounds norm = norm_of(known, disturbances(model, L, theta));
+    const ErrorDisturbances d = error_disturbances(model, theta, form);
+    const NormBounds norm = norm_of(known, less(d.E, times(L, d.N)));
     certificate.norm_lower = norm.lower;
     certificate.norm_upper = norm.upper;
   } catch (const Error& error) {
@@ -82,19 +72,18 @@ GainCertificate certify(const Model& model, const Matrix& L, const Matrix& theta
   return certificate;
 }
 
-std::string gain_problem(const Model& model, const Matrix& L) {
+std::string gain_problem(const Model& model, const Matrix& L, GainForm form) {
   const LinearModel& m = model.linear;
   if (L.rows() != m.states() || L.cols() != m.outputs()) {
     return "is " + std::to_string(L.rows()) + " × " + std::to_string(L.cols()) + ", must be " +
            std::to_string(m.states()) + " × " + std::to_string(m.outputs());
   }
   if (!L.allFinite()) return "has entries that are no numbers";
-  const Matrix C = mean_outputs(m);
-  if (!(m.A - linalg::product(L, C)).allFinite()) return "makes A - L C leave the range of numbers";
-  const Answer schur = invariant::closed_loop(m.A, L, C).schur;
-  return schur == Answer::yes
-             ? ""
-             : "A - L C " + invariant::not_schur(schur, m.A - linalg::product(L, C));
+  const std::string name = name_of_loop(form);
+  const Matrix loop = m.A - linalg::product(L, shown_errors(m, form).value);
+  if (!loop.allFinite()) return "makes " + name + " leave the range of numbers";
+  const Answer schur = loop_of_errors(m, L, form).schur;
+  return schur == Answer::yes ? "" : name + " " + invariant::not_schur(schur, loop);
 }
 
 }  // namespace cordon::estimators

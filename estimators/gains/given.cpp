@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The gain as a matrix of the study. What is told about it is found out here as for every other.
 #include "components.hpp"
-#include "cordon/invariant/schur.hpp"
 #include "gains/gain_certificate.hpp"
 #include "gains/theta.hpp"
 
@@ -11,29 +10,29 @@ namespace {
 
 constexpr const char* gain_suggestion = "a row per state, a column per output, with A - L C stable";
 
-class Given final : public GainDesigner {
+class Given final : public FormedDesigner {
  public:
   explicit Given(Matrix L) : L_(std::move(L)) {}
 
  private:
-  GainDesign do_design(const Model& model) const override {
-    if (std::string problem = gain_problem(model, L_); !problem.empty()) {
-      return {refuted(model) ? Answer::no : Answer::unknown,
+  GainDesign do_design(const Model& model, GainForm form) const override {
+    if (std::string problem = gain_problem(model, L_, form); !problem.empty()) {
+      return {refuted(model, form) ? Answer::no : Answer::unknown,
               {},
               "the gain " + std::move(problem),
               gain_suggestion};
     }
     Gain gain;
     gain.L = L_;
-    gain.certificate = certify(model, L_, theta_of(model));
+    gain.certificate = certify(model, L_, theta_of(model), form);
     return {Answer::yes, std::move(gain)};
   }
 
   /// Of a loop with many states it may be open whether it is stable.
-  bool refuted(const Model& model) const {
+  bool refuted(const Model& model, GainForm form) const {
     const LinearModel& m = model.linear;
     const bool fits = L_.rows() == m.states() && L_.cols() == m.outputs() && L_.allFinite();
-    return !fits || invariant::closed_loop(m.A, L_, mean_outputs(m)).schur != Answer::unknown;
+    return !fits || loop_of_errors(m, L_, form).schur != Answer::unknown;
   }
 
   Matrix L_;

@@ -28,18 +28,21 @@ around W and V, C is taken with the middle of the sensors' effectiveness.
 large P is returned. The gain is checked afterwards, without P: A - L C must be stable, and a gain
 is refused whose norm is above γ* (1 + 1e-4) for certain. A pair (A, C) that is not detectable is
 refused with the mode that does not show.
+
+For observers that correct a predicted set ("gain_correction") C A stands for C, and the columns of
+Eθ, Bw G_W and Dv G_V become P Eθ - M C Eθ, P Bw G_W - M C Bw G_W and -M Dv G_V.
 )";
 
-class HInfinity final : public GainDesigner {
+class HInfinity final : public FormedDesigner {
  public:
   explicit HInfinity(std::optional<Matrix> theta) : theta_(std::move(theta)) {}
 
  private:
-  GainDesign do_design(const Model& model) const override {
+  GainDesign do_design(const Model& model, GainForm form) const override {
     const Matrix theta = theta_of(model, theta_);
-    const ErrorDynamics errors = error_dynamics(model, theta);
+    const ErrorDynamics errors = error_dynamics(model, theta, form);
     if (std::optional<GainDesign> none = without_gain(model, errors)) return std::move(*none);
-    return h_infinity_design(model, theta, errors, false);
+    return h_infinity_design(model, theta, errors, {form, false});
   }
 
   std::optional<Matrix> theta_;

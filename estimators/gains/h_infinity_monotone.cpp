@@ -35,13 +35,13 @@ class HInfinityMonotone final : public GainDesigner {
  private:
   GainDesign do_design(const Model& model) const override {
     const Matrix theta = theta_of(model, theta_);
-    const ErrorDynamics errors = error_dynamics(model, theta);
+    const ErrorDynamics errors = error_dynamics(model, theta, GainForm::predictor);
     if (std::optional<Obstacle> why = no_monotone_gain(errors.A, shown_outputs(model.linear))) {
       return no_gain(why->gain_exists, std::move(why->reason),
                      "an observer that needs no monotone gain, or states in which there is one");
     }
     if (std::optional<GainDesign> none = without_gain(model, errors)) return std::move(*none);
-    return h_infinity_design(model, theta, errors, true);
+    return h_infinity_design(model, theta, errors, {GainForm::predictor, true});
   }
 
   std::optional<Matrix> theta_;

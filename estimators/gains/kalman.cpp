@@ -21,31 +21,32 @@ constexpr const char* kalman_details =
     "all\n"
     "times: the limit of this recursion, both covariations enlarged by 1e-6 of their largest entry "
     "so that it exists wherever\n"
-    "(A, C) is detectable.";
+    "(A, C) is detectable. For observers that correct a predicted set, P is that of this set, and "
+    "A is left out of L.";
 
-class Kalman final : public GainDesigner {
+class Kalman final : public FormedDesigner {
  public:
   explicit Kalman(bool steady) : steady_(steady) {}
 
  private:
-  GainDesign do_design(const Model& model) const override {
+  GainDesign do_design(const Model& model, GainForm form) const override {
     const std::string suggestion = "measure what is unstable, or use an observer without a gain";
     if (auto hidden = undetectable_mode(model.linear.A, shown_outputs(model.linear))) {
       return {hidden->gain_exists, {}, not_detectable(*hidden), suggestion};
     }
     Gain gain;
     try {
-      gain.L = steady_kalman_gain(model);
+      gain.L = steady_kalman_gain(model, form);
     } catch (const Error& error) {
       return {Answer::unknown, {}, error.what(), ""};
     }
-    if (std::string problem = gain_problem(model, gain.L); !problem.empty()) {
+    if (std::string problem = gain_problem(model, gain.L, form); !problem.empty()) {
       return {Answer::unknown,
               {},
               "the limit of the Kalman recursion does not serve: " + std::move(problem),
               suggestion};
     }
-    gain.certificate = certify(model, gain.L, theta_of(model));
+    gain.certificate = certify(model, gain.L, theta_of(model), form);
     return {Answer::yes, std::move(gain)};
   }
 

@@ -48,7 +48,7 @@ Matrix kalman_gain(const Model& model, MatrixIn P) {
   return gain->transpose();
 }
 
-Matrix steady_kalman_gain(const Model& model) {
+Matrix steady_kalman_gain(const Model& model, GainForm form) {
   const LinearModel& m = model.linear;
   const Index n = m.states(), p = m.outputs();
   const Matrix C = mean_outputs(m);
@@ -73,8 +73,11 @@ Matrix steady_kalman_gain(const Model& model) {
     waited = change < least ? 0 : waited + 1;
     least = std::min(least, change);
     P = next;
-    if (change <= allowed_change * scale || (waited >= patience && change <= settled * scale))
-      return L;
+    if (change > allowed_change * scale && !(waited >= patience && change <= settled * scale))
+      continue;
+    if (form == GainForm::predictor) return L;
+    const std::optional<Matrix> correction = linalg::solve_spd(S, PCt.transpose());
+    if (correction) return correction->transpose();
   }
   throw Error(Errc::invalid,
               "no gain was found: the recursion of the covariation did not settle, as where (A, C) "

@@ -5,7 +5,7 @@
 //   L = A P C̄ᵀ S⁻¹,   S = C̄ P C̄ᵀ + R.
 #pragma once
 
-#include "cordon/interfaces/model.hpp"
+#include "gains/gain_form.hpp"
 
 namespace cordon::estimators {
 
@@ -16,7 +16,8 @@ Matrix kalman_gain(const Model& model, MatrixIn P);
 /// The limit of L under P ← A P Aᵀ + Q - L S Lᵀ, with Q and R enlarged by 1e-6 of the largest entry
 /// of Q and R (1 if both are 0) times the identity, so that S is regular and the limit stabilises
 /// wherever (A, C̄) is detectable. Throws Errc::invalid if it does not converge, which is where (A,
-/// C̄) is not detectable, and the errors of W and V that no zonotope contains. O(n³) per step.
-Matrix steady_kalman_gain(const Model& model);
+/// C̄) is not detectable, and the errors of W and V that no zonotope contains. The filter's is Λ = P
+/// C̄ᵀ S⁻¹ of the same P, that of predicted sets; L = A Λ. O(n³) per step.
+Matrix steady_kalman_gain(const Model& model, GainForm form = GainForm::predictor);
 
 }  // namespace cordon::estimators

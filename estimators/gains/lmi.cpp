@@ -88,12 +88,11 @@ void BlockInequality::add(std::size_t i, std::size_t j, const Matrix& constant) 
   place(inequality_.constant, i, j, constant);
 }
 
-ErrorDynamics error_dynamics(const Model& model, const Matrix& theta) {
+ErrorDynamics error_dynamics(const Model& model, const Matrix& theta, GainForm form) {
   const LinearModel& m = model.linear;
-  const Matrix w = linalg::product(m.Bw, invariant::enclosing_zonotope(model.W, "W").G);
-  ErrorDynamics errors{m.A, mean_outputs(m), Matrix(m.states(), theta.cols() + w.cols()),
-                       linalg::product(m.Dv, invariant::enclosing_zonotope(model.V, "V").G)};
-  errors.E << theta, w;
+  ErrorDisturbances d = error_disturbances(model, theta, form);
+  ErrorDynamics errors{m.A, shown_errors(m, form).value, std::move(d.E.value),
+                       std::move(d.N.value)};
   for (const Matrix* part : {&errors.E, &errors.N}) {
     if (part->size() > 0) errors.unit = std::max(errors.unit, part->cwiseAbs().maxCoeff());
   }

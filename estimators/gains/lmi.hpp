@@ -8,6 +8,7 @@
 
 #include "cordon/registry/plugin.hpp"
 #include "cordon/sdp/sdp.hpp"
+#include "gains/gain_form.hpp"
 
 namespace cordon::estimators {
 
@@ -41,14 +42,14 @@ class BlockInequality {
   MatrixInequality inequality_;
 };
 
-/// The errors of an observer with gain L: e⁺ = (A - L C) e + E d - L N v, all d and v in unit
-/// boxes; C is C̄ = mid(g) C, E is [Eθ, Bw G_W], and N is Dv G_V. E and N are divided by `unit`, so
-/// that their largest entry is 1 (`unit` 0: both are zero).
+/// The errors of an observer with gain L: e⁺ = (A - L C) e + (E - L N) d, d in a unit box; C, E and
+/// N are 𝒞, ℰ and 𝒩 of gain_form.hpp. E and N are divided by `unit`, so that their largest entry is
+/// 1 (`unit` 0: both are zero).
 struct ErrorDynamics {
   Matrix A, C, E, N;
   double unit = 0;
 };
-ErrorDynamics error_dynamics(const Model& model, const Matrix& theta);
+ErrorDynamics error_dynamics(const Model& model, const Matrix& theta, GainForm form);
 
 /// The parameter "theta", and sets W and V that zonotopes enclose.
 std::vector<Diagnostic> check_design(const GainContext& context, const Params& params);

@@ -27,7 +27,10 @@ constexpr const char* poles_details =
     "chosen as perpendicular to each other as the outputs allow, so that the poles move least with "
     "A. Every mode of A must show "
     "in\n"
-    "the outputs, and a pole may be asked for as often as the rank of C.";
+    "the outputs, and a pole may be asked for as often as the rank of C. For observers that "
+    "correct "
+    "a predicted set C A\n"
+    "stands for C.";
 
 struct Pole {
   double real = 0, imaginary = 0;
@@ -63,14 +66,14 @@ std::map<Pole, Index> counted(const std::vector<Pole>& poles) {
   return counts;
 }
 
-class Poles final : public GainDesigner {
+class Poles final : public FormedDesigner {
  public:
   explicit Poles(std::vector<Pole> poles) : poles_(std::move(poles)) {}
 
  private:
-  GainDesign do_design(const Model& model) const override {
+  GainDesign do_design(const Model& model, GainForm form) const override {
     const Matrix& A = model.linear.A;
-    const Matrix C = mean_outputs(model.linear);
+    const Matrix C = shown_errors(model.linear, form).value;
     if (static_cast<Index>(poles_.size()) != model.linear.states()) {
       return {Answer::no,
               {},
@@ -86,14 +89,21 @@ class Poles final : public GainDesigner {
               "the pair (A, C)" + what + hidden->reason,
               "use \"kalman\", which leaves such modes"};
     }
-    const Index rank = exact::rank(shown);
+    if (form == GainForm::filter && unobservable_mode(A, C)) {
+      return {Answer::unknown,
+              {},
+              "the pair (A, C A) is not observable: modes of A that decay at once keep their "
+              "eigenvalue 0",
+              "use \"kalman\", which leaves such modes"};
+    }
+    const Index rank = exact::rank(form == GainForm::filter ? C : shown);
     for (const auto& [pole, count] : counted(poles_)) {
       if (count <= rank) continue;
       return {Answer::no,
               {},
               "the pole " + text(pole) + " is asked for " + std::to_string(count) +
-                  " times, the outputs have rank " + std::to_string(rank) +
-                  ": A - L C would have no basis of eigenvectors",
+                  " times, the outputs have rank " + std::to_string(rank) + ": " +
+                  name_of_loop(form) + " would have no basis of eigenvectors",
               "ask for different poles"};
     }
     std::vector<std::complex<double>> values;
@@ -108,14 +118,14 @@ class Poles final : public GainDesigner {
               "the poles were not placed: " + why,
               "ask for poles further apart, or nearer to those of A"};
     }
-    if (std::string problem = gain_problem(model, placed->L); !problem.empty()) {
+    if (std::string problem = gain_problem(model, placed->L, form); !problem.empty()) {
       return {Answer::unknown,
               {},
               "the placed gain does not serve: " + std::move(problem),
               "ask for poles nearer to 0"};
     }
     Gain gain;
-    gain.certificate = certify(model, placed->L, theta_of(model));
+    gain.certificate = certify(model, placed->L, theta_of(model), form);
     gain.L = std::move(placed->L);
     return {Answer::yes, std::move(gain)};
   }

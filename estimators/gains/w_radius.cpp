@@ -33,6 +33,9 @@ effectiveness.
 Theorem 3.5 of the paper leaves ε free where 1 - ρ stands here, and asks for no least W: any
 solution may then be divided by any number, and says nothing about the size. ρ is the caller's:
 near 1 for slow plants, whose modes that do not show in the outputs must decay faster than √ρ.
+
+For observers that correct a predicted set ("gain_correction") C A stands for C, and the columns of
+Bw G_W, Eθ and Dv G_V become W Bw G_W - Y C Bw G_W, W Eθ - Y C Eθ and -Y Dv G_V.
 )";
 
 struct WRadiusProgram {
@@ -41,29 +44,27 @@ struct WRadiusProgram {
 };
 
 WRadiusProgram w_radius_program(const ErrorDynamics& errors, double rho) {
-  const Index n = errors.A.rows(), e = errors.E.cols(), v = errors.N.cols();
+  const Index n = errors.A.rows(), disturbances = errors.E.cols();
   WRadiusProgram design;
   design.W = symmetric_variable(0, n);
   design.Y = full_variable(design.W.end(), n, errors.C.rows());
-  const MatrixVariable for_e = diagonal_variable(design.Y.end(), e),
-                       for_v = diagonal_variable(for_e.end(), v);
-  const MatrixVariable tau{for_v.end(), {Matrix::Identity(n, n)}};
+  const MatrixVariable for_d = diagonal_variable(design.Y.end(), disturbances);
+  const MatrixVariable tau{for_d.end(), {Matrix::Identity(n, n)}};
   const Matrix I = Matrix::Identity(n, n);
   // Row and column of the last block first, which changes nothing.
-  BlockInequality contraction({n, n, e, v});
+  BlockInequality contraction({n, n, disturbances});
   contraction.add(0, 0, design.W, I);
   contraction.add(0, 1, design.W, errors.A);
   contraction.add(0, 1, design.Y, -errors.C);
   contraction.add(0, 2, design.W, errors.E);
-  contraction.add(0, 3, design.Y, -errors.N);
+  contraction.add(0, 2, design.Y, -errors.N);
   contraction.add(1, 1, design.W, rho * I);
-  contraction.add(2, 2, for_e, Matrix::Identity(e, e));
-  contraction.add(3, 3, for_v, Matrix::Identity(v, v));
+  contraction.add(2, 2, for_d, Matrix::Identity(disturbances, disturbances));
   BlockInequality size({n});
   size.add(0, 0, design.W, I);
   size.add(0, 0, tau, -I);
   MatrixInequality trace{Matrix::Constant(1, 1, 1 - rho), {}};
-  for (Index i = for_e.first; i < for_v.end(); ++i)
+  for (Index i = for_d.first; i < for_d.end(); ++i)
     trace.terms.emplace_back(i, Matrix::Constant(1, 1, -1));
   design.program.cost = -Vector::Unit(tau.end(), tau.first);
   design.program.inequalities = {std::move(contraction).finish(), std::move(size).finish(),
@@ -71,14 +72,14 @@ WRadiusProgram w_radius_program(const ErrorDynamics& errors, double rho) {
   return design;
 }
 
-class WRadiusGain final : public GainDesigner {
+class WRadiusGain final : public FormedDesigner {
  public:
   WRadiusGain(std::optional<Matrix> theta, double rho) : theta_(std::move(theta)), rho_(rho) {}
 
  private:
-  GainDesign do_design(const Model& model) const override {
+  GainDesign do_design(const Model& model, GainForm form) const override {
     const Matrix theta = theta_of(model, theta_);
-    const ErrorDynamics errors = error_dynamics(model, theta);
+    const ErrorDynamics errors = error_dynamics(model, theta, form);
     if (std::optional<GainDesign> none = without_gain(model, errors)) return std::move(*none);
     if (const auto slow = undetectable_mode(errors.A, shown_outputs(model.linear), rho_)) {
       const std::string none =
@@ -93,7 +94,7 @@ class WRadiusGain final : public GainDesigner {
     if (!L)
       return no_gain(Answer::unknown, "the matrix W of the solution is not positive definite",
                      "a larger rho");
-    if (const std::string problem = gain_problem(model, *L); !problem.empty()) {
+    if (const std::string problem = gain_problem(model, *L, form); !problem.empty()) {
       return no_gain(Answer::unknown, "the gain of the matrix inequality " + problem,
                      "a larger rho");
     }
@@ -101,7 +102,7 @@ class WRadiusGain final : public GainDesigner {
     design.feasible = Answer::yes;
     design.gain.L = *L;
     GainCertificate& c = design.gain.certificate;
-    c = certify(model, *L, theta);
+    c = certify(model, *L, theta, form);
     c.objective = "τ";
     // In the units of E and N, which were divided by `unit`, errors are smaller by it, and W larger
     // by its square.

@@ -12,14 +12,39 @@ namespace {
 
 constexpr const char* matrix_type = "given";
 
+std::vector<Diagnostic> problems_of(const ComponentSpec& spec, const ObserverContext& context,
+                                    GainForm form) {
+  // what is given is looked at by its designer for the predictor
+  if (form == GainForm::predictor || spec.type != matrix_type || !spec.params.has("matrix"))
+    return context.make->check_gain(spec, {context.model});
+  std::string problem = gain_problem(context.model, spec.params.matrix("matrix"), form);
+  if (problem.empty()) return {};
+  return {{"/matrix", std::move(problem),
+           std::string("a row per state, a column per output, with ") + name_of_loop(form) +
+               " stable"}};
+}
+
+GainDesign design_of(const GainDesigner& designer, const std::string& type, const Model& model,
+                     GainForm form) {
+  if (form == GainForm::predictor) return designer.design(model);
+  if (const auto* both = dynamic_cast<const FormedDesigner*>(&designer))
+    return both->design(model, form);
+  GainDesign none;
+  none.reason =
+      "\"" + type +
+      "\" designs gains for observers that predict, and this one corrects a predicted set";
+  none.suggestion = R"("kalman", "w_radius", "h_infinity", "poles", or a matrix)";
+  return none;
+}
+
 /// The gain, or none and its problems.
 ObserverGain designed(const ObserverContext& context, const Params& params, const std::string& name,
-                      const ComponentSpec& absent, std::vector<Diagnostic>& problems) {
+                      const ComponentSpec& absent, GainForm form,
+                      std::vector<Diagnostic>& problems) {
   const bool given = params.has(name);
   const ComponentSpec& spec = given ? params.component(name) : absent;
   const std::string place = given ? "/" + name : "";
-  if (std::vector<Diagnostic> wrong = context.make->check_gain(spec, {context.model});
-      !wrong.empty()) {
+  if (std::vector<Diagnostic> wrong = problems_of(spec, context, form); !wrong.empty()) {
     for (Diagnostic& problem : wrong) {
       const bool nested = given && !(spec.type == matrix_type &&
                                      problem.pointer == "/matrix");  // it may stand there alone
@@ -29,14 +54,15 @@ ObserverGain designed(const ObserverContext& context, const Params& params, cons
     return {};
   }
   ObserverGain made{context.make->make_gain(spec), {}};
-  GainDesign design = made.designer->design(context.model);
+  GainDesign design = design_of(*made.designer, spec.type, context.model, form);
   if (design.feasible != Answer::yes) {
     const std::string otherwise = given ? "" : "give \"" + name + "\"";
     problems.push_back(
         {place, design.reason, design.suggestion.empty() ? otherwise : design.suggestion});
     return {};
   }
-  if (const std::string problem = gain_problem(context.model, design.gain.L); !problem.empty()) {
+  if (const std::string problem = gain_problem(context.model, design.gain.L, form);
+      !problem.empty()) {
     problems.push_back(
         {place, "the gain that \"" + spec.type + "\" designed " + problem, "use another one"});
     return {};
@@ -56,9 +82,9 @@ void add_gain_parameter(ParamSchema& schema, const std::string& name, const std:
 ComponentSpec steady_kalman() { return {"kalman", Params().set("steady", true)}; }
 
 ObserverGain observer_gain(const ObserverContext& context, const Params& params,
-                           const std::string& name, const ComponentSpec& absent) {
+                           const std::string& name, const ComponentSpec& absent, GainForm form) {
   std::vector<Diagnostic> problems;
-  ObserverGain made = designed(context, params, name, absent, problems);
+  ObserverGain made = designed(context, params, name, absent, form, problems);
   if (!problems.empty()) throw InputError("the gain of an observer", std::move(problems));
   return made;
 }
@@ -77,8 +103,8 @@ Matrix gain_for(const ObserverGain& gain, const Model& model, const Enclosure& X
 
 void check_observer_gain(const ObserverContext& context, const Params& params,
                          const std::string& name, const ComponentSpec& absent,
-                         std::vector<Diagnostic>& problems) {
-  designed(context, params, name, absent, problems);
+                         std::vector<Diagnostic>& problems, GainForm form) {
+  designed(context, params, name, absent, form, problems);
 }
 
 }  // namespace cordon::estimators

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cordon/registry/plugin.hpp"
+#include "gains/gain_form.hpp"
 
 namespace cordon::estimators {
 
@@ -23,9 +24,10 @@ struct ObserverGain {
 ComponentSpec steady_kalman();
 
 /// The gain by the parameter `name`, or by `absent` where it is not given. Throws InputError with
-/// the reason if there is none.
+/// the reason if there is none. Not every designer knows the filter's form.
 ObserverGain observer_gain(const ObserverContext& context, const Params& params,
-                           const std::string& name, const ComponentSpec& absent);
+                           const std::string& name, const ComponentSpec& absent,
+                           GainForm form = GainForm::predictor);
 
 /// The gain that varies in time for the states in X, by the outputs of `model`; `steady` where no
 /// zonotope contains X.
@@ -36,6 +38,6 @@ Matrix gain_for(const ObserverGain& gain, const Model& model, const Enclosure& X
 /// parameter is not given.
 void check_observer_gain(const ObserverContext& context, const Params& params,
                          const std::string& name, const ComponentSpec& absent,
-                         std::vector<Diagnostic>& problems);
+                         std::vector<Diagnostic>& problems, GainForm form = GainForm::predictor);
 
 }  // namespace cordon::estimators
