@@ -17,16 +17,20 @@ namespace cordon::estimators {
 /// designed for the outputs that are there.
 class GainedRecursion {
  public:
+  /// `held`: see LuenbergerRecursion.
   GainedRecursion(const Model& model, ObserverGain gain, std::shared_ptr<const SetBackend> backend,
-                  Budget budget);
+                  Budget budget, Matrix held = {});
 
   const ObserverGain& gain() const { return gain_; }
   bool is_time_varying() const { return gain_.designer->is_time_varying(); }
   const LuenbergerRecursion& complete() const { return complete_; }
   Enclosure reduced(const Enclosure& X) const { return complete_.reduced(X); }
 
-  /// X̂⁺ before reduction, from X̂ and the sample of the same time.
-  Enclosure next(const Enclosure& X, const Sample& before);
+  /// X̂⁺ before reduction, from X̂ and the sample of the same time. `hull`: that of X̂, where it is
+  /// known already.
+  Enclosure next(const Enclosure& X, const Sample& before, const Box* hull = nullptr);
+  /// The recursion that `next` has taken last, for the outputs that the sample had.
+  const LuenbergerRecursion& used() const { return last_ ? last_->recursion : complete_; }
   /// Tells `limit` of the step that `next` has taken last.
   void tell(WideningLimit& limit, const Sample& before) const;
 
@@ -42,6 +46,7 @@ class GainedRecursion {
   ObserverGain gain_;
   std::shared_ptr<const SetBackend> backend_;
   Budget budget_;
+  Matrix held_;
   LuenbergerRecursion complete_;
   PerOutputs<Others> others_;
   std::shared_ptr<Others> last_;  ///< of the last step; null: it was by all outputs

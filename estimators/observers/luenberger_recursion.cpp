@@ -15,6 +15,8 @@ namespace {
 
 using linalg::product;
 
+constexpr double most_moved = 0.5;
+
 LineForm moved(const LineForm& X, const Vector& t) {
   LineForm Y = X;
   Y.c += t;
@@ -28,8 +30,9 @@ Vector largest_entries(const Box& box) {
 }  // namespace
 
 LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L,
-                                         std::shared_ptr<const SetBackend> backend, Budget budget)
-    : backend_(std::move(backend)), budget_(budget) {
+                                         std::shared_ptr<const SetBackend> backend, Budget budget,
+                                         Matrix held)
+    : backend_(std::move(backend)), budget_(budget), held_(std::move(held)) {
   const LinearModel& m = model.linear;
   const Index n = m.states(), p = m.outputs();
   if (m.is_descriptor())
@@ -78,8 +81,13 @@ LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L,
   if (has_spread(m.B_radius)) B_radius_ = m.B_radius;
   if (has_spread(m.C_radius)) C_radius_ = (g + m.sensor_radius()).asDiagonal() * m.C_radius;
   W_thickness_ = Thickness(model.W, Bw_);
+  if (held_.cols() > 0) {
+    output_size_ = product(C_, held_).cwiseAbs().rowwise().sum() +
+                   product(Dv_, V_generators_).cwiseAbs().rowwise().sum();
+  }
   use_gain(std::move(L));
-  if (model.W.constraints() + model.V.constraints() == 0) thickness_ = Thickness(error_noise());
+  if (held_.cols() == 0 && model.W.constraints() + model.V.constraints() == 0)
+    thickness_ = Thickness(error_noise());
 }
 
 void LuenbergerRecursion::use_gain(Matrix L) {
@@ -106,7 +114,21 @@ void LuenbergerRecursion::take_sizes() {
   y_norm_ = row_norm(y_terms_);
   u_norm_ = row_norm(u_terms_);
   constant_norm_ = row_norm(constant_terms_);
+  if (held_.cols() > 0) return take_thickness();
   thickness_ = W_thickness_;  // that of both costs more than a step, and is no thinner
+}
+
+/// Of [(A - L C̄) held, Bw G_W, -L Dv G_V]. While L moves these columns by no more than a half of
+/// what they span, the set holds a half of what it held.
+void LuenbergerRecursion::take_thickness() {
+  if (thick_L_.size() > 0 &&
+      thickness_.share_of((L_ - thick_L_).cwiseAbs() * output_size_) <= most_moved)
+    return;
+  const Matrix noise = error_noise();
+  Matrix columns(noise.rows(), held_.cols() + noise.cols());
+  columns << product(Ao_, held_), noise;
+  thickness_ = Thickness(columns);
+  thick_L_ = L_;
 }
 
 std::optional<RoundingRoom> LuenbergerRecursion::room_of(const Enclosure& X, VectorIn shift,

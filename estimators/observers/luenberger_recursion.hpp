@@ -26,9 +26,10 @@ namespace cordon::estimators {
 /// functions may be used from several threads.
 class LuenbergerRecursion {
  public:
-  /// L is n×n_y. Throws Errc::dimension.
+  /// L is n×n_y. `held`: a zonotope by its columns (n rows, or none at all) of which every X̂ that
+  /// is to come holds a translate; it only tells how thick X̂⁺ is. Throws Errc::dimension.
   LuenbergerRecursion(const Model& model, Matrix L, std::shared_ptr<const SetBackend> backend,
-                      Budget budget);
+                      Budget budget, Matrix held = {});
 
   /// The gain from now on; n×n_y. Throws Errc::dimension.
   void use_gain(Matrix L);
@@ -88,6 +89,7 @@ class LuenbergerRecursion {
   std::optional<RoundingRoom> room_of(const Enclosure& X, VectorIn shift, const Sample& now,
                                       const Box* hull) const;
   void take_sizes();
+  void take_thickness();
   Enclosure bounded_box(const Vector& widths, const std::string& cause) const;
 
   std::shared_ptr<const SetBackend> backend_;
@@ -108,6 +110,8 @@ class LuenbergerRecursion {
   Vector W_size_, V_size_;              ///< of the entries of w and v
   Vector constant_terms_;               ///< sizes of Bw W and L Dv V
   Thickness W_thickness_, thickness_;   ///< of Bw W; of Bw W ⊕ (-L Dv V), or as that of Bw W
+  Matrix held_, thick_L_;               ///< L for which `thickness_` was found, with `held_`
+  Vector output_size_;                  ///< of C̄ held and Dv V
   double x_norm_ = 0, y_norm_ = 0, u_norm_ = 0, constant_norm_ = 0;
   Matrix raw_C_, raw_D_;                   ///< C and |D| max f, for Δ
   Vector sensor_radius_;                   ///< no entries: exact sensors

@@ -6,14 +6,9 @@
 // Ranges of effectiveness and interval matrices: effectiveness.hpp.
 // Exact with constrained and line zonotopes until a reduction bites; zonotopes intersect strip by
 // strip, intervals contract.
-#include <optional>
-
 #include "components.hpp"
-#include "cordon/core/error.hpp"
-#include "cordon/core/linalg.hpp"
 #include "observer_parameters.hpp"
-#include "observers/effectiveness.hpp"
-#include "observers/rounding_room.hpp"
+#include "observers/prediction.hpp"
 
 namespace cordon::estimators {
 
@@ -25,10 +20,8 @@ class PredictionCorrection final : public Observer {
       : Observer(context.model, context.backend),
         budget_(budget_from(params)),
         X0_(initial_set_from(model(), params)),
-        W_(backend().import(model().W)),
-        disturbance_(linalg::product(model().linear.Bw, model().W.c)),
-        thickness_(model().W, model().linear.Bw),
         effectiveness_(model(), backend()),
+        prediction_(model(), backend(), effectiveness_),
         recursion_(effectiveness_.recursion({&model().linear.B, &model().linear.D})) {
     if (params.has("admissible_set")) admit(params.set_form("admissible_set"), budget_from(params));
   }
@@ -44,38 +37,12 @@ class PredictionCorrection final : public Observer {
   }
 
   Enclosure do_step(const Sample& before, const Sample& now) override {
-    const LinearModel& m = model().linear;
-    const Enclosure predicted = timed(Phase::predict, [&] {
-      const Matrix spread = effectiveness_.input_spread(m.B, before.u),
-                   unit = Matrix::Identity(m.states(), m.states());
-      const Enclosure open =
-          effectiveness_.has_open_states() ? effectiveness_.open_states(X_, before.u) : Enclosure{};
-      std::vector<Term> terms{{m.Bw, W_}};
-      if (effectiveness_.has_input_ranges())
-        terms.push_back({spread, effectiveness_.input_factors()});
-      if (effectiveness_.has_open_states()) terms.push_back({unit, open});
-      const bool as_set = effectiveness_.inputs_enter_as_sets() && m.inputs() > 0;
-      const Enclosure u = as_set ? backend().point(before.u) : Enclosure{};
-      if (as_set) terms.push_back({m.B, u});
-      const Vector shift =
-          as_set ? Vector(Vector::Zero(m.states())) : effectiveness_.input(m.B, before.u);
-      const std::optional<RoundingRoom> room =
-          m.inputs() > 0 && !as_set ? std::optional(room_of(shift, before.u)) : std::nullopt;
-      if (room && room->is_needed()) terms.push_back(room->term());
-      Enclosure next = backend().predict(X_, {m.A, shift, terms});
-      if (effectiveness_.has_open_states()) next.tightness = Tightness::outer;
-      return next;
-    });
+    const Enclosure predicted =
+        timed(Phase::predict, [&] { return prediction_.next(X_, before.u); });
     return X_ = corrected(predicted, now);
   }
 
   void do_replace(const Enclosure& X) override { X_ = X; }
-
-  /// For B u beside the center of Bw W.
-  RoundingRoom room_of(const Vector& shift, VectorIn u) const {
-    const Vector terms = effectiveness_.input_terms(model().linear.B, u) + disturbance_.cwiseAbs();
-    return {backend(), shift + disturbance_, terms, thickness_};
-  }
 
   Enclosure corrected(const Enclosure& X, const Sample& now) {
     const Enclosure narrowed =
@@ -85,10 +52,9 @@ class PredictionCorrection final : public Observer {
 
   Budget budget_;
   LineForm X0_;
-  Enclosure W_, X_;
-  Vector disturbance_;   ///< center of Bw W
-  Thickness thickness_;  ///< of Bw W
+  Enclosure X_;
   Effectiveness effectiveness_;
+  Prediction prediction_;
   Tightness recursion_;
 };
 

@@ -76,6 +76,8 @@ std::vector<Choice> choices(const Matrix& gain) {
     all.push_back({backend, "prediction_correction", {}});
     all.push_back({backend, "luenberger", Params().set("gain", given)});
     all.push_back({backend, "luenberger", Params().set("gain", kalman)});
+    all.push_back({backend, "gain_correction", Params().set("gain", given)});
+    all.push_back({backend, "gain_correction", {}});
     all.push_back({backend, "zonotope_uncertain", Params().set("gain", given)});
     all.push_back({backend, "interval_trajectory", Params().set("gain", given)});
     Params descriptor;

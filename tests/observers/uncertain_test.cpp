@@ -90,6 +90,15 @@ TEST_CASE("the gain that follows the set keeps to the truth as well") {
   }
 }
 
+TEST_CASE("a correction by a gain keeps to the truth") {
+  for (const char* name : backends()) {
+    CAPTURE(name);
+    CHECK(rc::check("the truth stays inside", [&] {
+      expect_truth_inside("gain_correction", name, random_model(*rc::gen::arbitrary<bool>()), {});
+    }));
+  }
+}
+
 TEST_CASE("interval matrices by hand, where strips cut exactly") {
   for (const char* name : {"interval", "constrained_zonotope", "line_zonotope"}) {
     CAPTURE(name);

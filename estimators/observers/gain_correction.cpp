@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A predicted set that is corrected by a gain, on any backend:
+//   X̄_0 = X0,   X̄_k = A X̂_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W
+//   X̂_k = (I - Λ C) X̄_k ⊕ {Λ (y_k - D u_k)} ⊕ (-Λ Dv) V,   reduced to the budget.
+// With y - D u = C x + Dv v every x is (I - Λ C) x + Λ (y - D u - Dv v): X̂ encloses for every Λ, of
+// which only its size depends. The correction is the recursion of luenberger_recursion.hpp for a
+// state that stays where it is, A = I and neither inputs nor disturbances, so that ranges of
+// sensors, an interval C, missing outputs and rounding are dealt with as there.
+#include "components.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/core/tolerances.hpp"
+#include "cordon/invariant/zonotope_enclosure.hpp"
+#include "observer_parameters.hpp"
+#include "observers/gained_recursion.hpp"
+#include "observers/interval_spread.hpp"
+#include "observers/prediction.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+/// Every predicted set but the first holds Bw W. Constraints leave it open how thick that is.
+Matrix held_by_predictions(const Model& model) {
+  if (model.W.constraints() + model.V.constraints() > 0) return {};
+  return linalg::product(model.linear.Bw, invariant::enclosing_zonotope(model.W).G);
+}
+
+/// Is 0 outside the box by more than rounding, which is a share of these sizes?
+bool excludes_zero(const Box& box, const Vector& sizes) {
+  for (Index i = 0; i < box.dim(); ++i) {
+    const double slack = tolerances::proof_margin *
+                         (sizes[i] + std::max(std::abs(box.lower[i]), std::abs(box.upper[i])));
+    if (box.lower[i] > slack || -box.upper[i] > slack) return true;
+  }
+  return false;
+}
+
+class GainCorrection final : public Observer {
+ public:
+  GainCorrection(const ObserverContext& context, const Params& params, const ObserverGain& gain)
+      : Observer(context.model, context.backend),
+        budget_(budget_from(params)),
+        X0_(initial_set_from(model(), params)),
+        effectiveness_(model(), backend()),
+        prediction_(model(), backend(), effectiveness_),
+        first_(at_rest(model()), gain, context.backend, budget_),
+        correction_(at_rest(model()), gain, context.backend, budget_,
+                    held_by_predictions(model())) {
+    if (params.has("admissible_set")) admit(params.set_form("admissible_set"), budget_);
+  }
+
+  LineForm initial_set() const override { return X0_; }
+  std::vector<Gain> gains() const override { return {correction_.gain().gain}; }
+  bool follows_its_sets() const override { return true; }
+  bool takes_missing_outputs() const override { return true; }
+
+ private:
+  Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
+    return X_ = corrected(first_, X0 ? *X0 : backend().import(X0_), first);
+  }
+  Enclosure do_step(const Sample& before, const Sample& now) override {
+    const Enclosure predicted =
+        timed(Phase::predict, [&] { return prediction_.next(X_, before.u); });
+    return X_ = corrected(correction_, predicted, now);
+  }
+  void do_replace(const Enclosure& X) override { X_ = X; }
+
+  Enclosure corrected(GainedRecursion& recursion, const Enclosure& X, const Sample& now) {
+    const bool none = now.y.size() == static_cast<Index>(now.missing.size());
+    const Enclosure narrowed =
+        none ? X : timed(Phase::correct, [&] { return narrowed_by(recursion, X, now); });
+    return timed(Phase::reduce, [&] { return backend().reduce(narrowed, budget_); });
+  }
+
+  /// ∅ where an output is proven to contradict the prediction.
+  Enclosure narrowed_by(GainedRecursion& recursion, const Enclosure& X, const Sample& now) const {
+    const Box reach = reach_of(*X);
+    Enclosure next = recursion.next(X, now, &reach);
+    if (reach.is_empty()) return next;
+    const Sample used = now.is_complete() ? now : without_missing(now);
+    const Vector size = reach.lower.cwiseAbs().cwiseMax(reach.upper.cwiseAbs());
+    const Enclosure residual = recursion.used().residual(X, used);
+    if (size.allFinite() &&
+        excludes_zero(reach_of(*residual), recursion.used().residual_size(size, used)))
+      return backend().empty(model().states());
+    return next;
+  }
+
+  Budget budget_;
+  LineForm X0_;
+  Enclosure X_;
+  Effectiveness effectiveness_;
+  Prediction prediction_;
+  GainedRecursion first_, correction_;
+};
+
+ComponentSpec following_kalman() { return {"kalman", Params().set("steady", false)}; }
+
+std::vector<Diagnostic> check_gain_correction(const ObserverContext& context,
+                                              const Params& params) {
+  std::vector<Diagnostic> problems = check_common(context, params);
+  const LinearModel& m = context.model.linear;
+  if (m.is_descriptor()) {
+    problems.push_back({"/type", "\"gain_correction\" takes systems of type \"lti\"",
+                        "use the observer \"descriptor\""});
+    return problems;
+  }
+  const bool grows = has_spread(m.C_radius) || has_spread(m.sensor_radius());
+  if (problems.empty() && grows) check_bounded_start(context, params, problems);
+  check_noises(context, problems);
+  if (!problems.empty()) return problems;  // gains are designed for these sets
+  check_observer_gain(context, params, "gain", following_kalman(), problems, GainForm::filter);
+  return problems;
+}
+
+constexpr const char* gain_correction_details =
+    "The predicted set X̄ = A X̂ ⊕ {B u} ⊕ Bw W becomes\n"
+    "    X̂⁺ = (I - Λ C) X̄ ⊕ {Λ (y⁺ - D u⁺)} ⊕ (-Λ Dv) V,\n"
+    "which holds the state for every gain Λ: the gain decides how large the set is. It uses the "
+    "outputs of its time, without an\n"
+    "intersection. Errors obey e⁺ = (I - Λ C) (A e + Bw w) - Λ Dv v, and gains are designed for "
+    "this form, so that (I - Λ C) A\n"
+    "is stable. \"kalman\", the default, follows the predicted set: of all Λ its estimate has the "
+    "least sum of squares of\n"
+    "generators; with \"steady\" it is one matrix for all times, as \"w_radius\", \"h_infinity\", "
+    "\"poles\" and given ones are.\n"
+    "The set is empty only where an output by itself is proven to lie outside C X̄ + D u + Dv V.";
+
+}  // namespace
+
+CORDON_COMPONENT(observer, gain_correction) {
+  ParamSchema schema = common_parameters();
+  add_admissible_set(schema);
+  add_gain_parameter(schema, "gain",
+                     "Λ, a matrix with a row per state and a column per output that makes (I - Λ "
+                     "C) A stable, or a designer of one; absent: \"kalman\", which follows the "
+                     "predicted set");
+  registrar.add(ObserverEntry{
+      {"gain_correction",
+       "prediction by the model, correction by a gain; standard linear systems, any backend",
+       "Wang2018a", std::move(schema), gain_correction_details},
+      check_gain_correction,
+      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+        return std::make_unique<GainCorrection>(
+            context, params,
+            observer_gain(context, params, "gain", following_kalman(), GainForm::filter));
+      },
+      true,
+      true});
+}
+
+}  // namespace cordon::estimators
