@@ -44,8 +44,11 @@ class GainCorrection final : public Observer {
         effectiveness_(model(), backend()),
         prediction_(model(), backend(), effectiveness_),
         first_(at_rest(model()), gain, context.backend, budget_),
-        correction_(at_rest(model()), gain, context.backend, budget_,
-                    held_by_predictions(model())) {
+        correction_(at_rest(model()), gain, context.backend, budget_, held_by_predictions(model())),
+        noise_(linalg::product(model().linear.Dv, invariant::enclosing_zonotope(model().V).G)
+                   .cwiseAbs()
+                   .rowwise()
+                   .sum()) {
     if (params.has("admissible_set")) admit(params.set_form("admissible_set"), budget_);
   }
 
@@ -76,14 +79,22 @@ class GainCorrection final : public Observer {
   Enclosure narrowed_by(GainedRecursion& recursion, const Enclosure& X, const Sample& now) const {
     const Box reach = reach_of(*X);
     Enclosure next = recursion.next(X, now, &reach);
-    if (reach.is_empty()) return next;
-    const Sample used = now.is_complete() ? now : without_missing(now);
+    if (reach.is_empty() || !reach.is_bounded()) return next;
+    const bool contradicts = now.is_complete()
+                                 ? is_contradicted(recursion.used(), X, reach, now, noise_)
+                                 : is_contradicted(recursion.used(), X, reach, without_missing(now),
+                                                   noise_(present_outputs(now)));
+    return contradicts ? backend().empty(model().states()) : next;
+  }
+
+  /// Is an output proven to lie outside C X + D u + Dv V? Not where the noise alone explains how
+  /// far it is from that of the centre, which spares the set of all outputs.
+  static bool is_contradicted(const LuenbergerRecursion& recursion, const Enclosure& X,
+                              const Box& reach, const Sample& now, VectorIn noise) {
+    const Vector missed = recursion.residual(reach.center(), now);
+    if ((missed.cwiseAbs().array() <= noise.array()).all()) return false;
     const Vector size = reach.lower.cwiseAbs().cwiseMax(reach.upper.cwiseAbs());
-    const Enclosure residual = recursion.used().residual(X, used);
-    if (size.allFinite() &&
-        excludes_zero(reach_of(*residual), recursion.used().residual_size(size, used)))
-      return backend().empty(model().states());
-    return next;
+    return excludes_zero(reach_of(*recursion.residual(X, now)), recursion.residual_size(size, now));
   }
 
   Budget budget_;
@@ -92,6 +103,7 @@ class GainCorrection final : public Observer {
   Effectiveness effectiveness_;
   Prediction prediction_;
   GainedRecursion first_, correction_;
+  Vector noise_;  ///< half widths of Dv V
 };
 
 ComponentSpec following_kalman() { return {"kalman", Params().set("steady", false)}; }

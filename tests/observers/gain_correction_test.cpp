@@ -240,3 +240,48 @@ TEST_CASE("what it does not take is said") {
   unbounded.V = make_space(2);
   CHECK(!problems(unbounded, {}).empty());
 }
+
+TEST_CASE("widths as multiples of those of exact sets, as docs/gain_observers.md tells them") {
+  const auto cut = [](std::int64_t generators, std::int64_t constraints) {
+    return Params().set("max_generators", generators).set("max_constraints", constraints);
+  };
+  const Params steady = gain("kalman", Params().set("steady", true)),
+               half = gain("w_radius", Params().set("rho", .5));
+  const Params bravo = Params().set("strip", std::string("bravo"));
+  const struct {
+    const char *observer, *backend;
+    Params params;
+    double told[3];
+    Params sets = {};
+  } rows[] = {
+      {"prediction_correction", "constrained_zonotope", cut(40, 10), {1.00, 1.00, 1.15}},
+      {"prediction_correction", "constrained_zonotope", cut(20, 5), {1.00, 1.53, 1.30}},
+      {"prediction_correction", "zonotope", cut(30, 5), {1.13, 1.25, 2.12}, bravo},
+      {"gain_correction", "zonotope", unreduced(gain("kalman")), {1.26, 1.48, 2.55}},
+      {"gain_correction", "zonotope", unreduced(half), {1.11, 1.80, 2.80}},
+      {"gain_correction", "zonotope", unreduced(gain("h_infinity")), {1.14, 2.38, 3.07}},
+      {"error_hull", "interval", steady, {1.78, 3.27, 3.87}},
+      {"luenberger", "zonotope", unreduced(gain("kalman")), {1.90, 10.8, 2.91}},
+      {"luenberger", "zonotope", unreduced(half), {1.70, 10.9, 3.38}},
+      {"luenberger", "zonotope", unreduced(steady), {3.39, 22.7, 4.44}},
+  };
+  for (const auto& row : rows) {
+    CAPTURE(row.observer);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Example& plant = plants()[i];
+      CAPTURE(plant.name);
+      const std::vector<Box> found = hulls(plant, row.observer, row.params, row.backend, row.sets);
+      const json exact = plant.reference["designs"]["exact"]["hulls"];
+      double sum = 0, count = 0;
+      for (const auto& [k, bounds] : exact.items()) {
+        if (std::stoi(k) < 5) continue;
+        const Box& hull = found.at(static_cast<std::size_t>(std::stoi(k)));
+        const Matrix told = matrix(bounds);
+        sum +=
+            (hull.upper - hull.lower).cwiseQuotient((told.row(1) - told.row(0)).transpose()).sum();
+        count += static_cast<double>(hull.dim());
+      }
+      CHECK(sum / count == doctest::Approx(row.told[i]).epsilon(.006));
+    }
+  }
+}

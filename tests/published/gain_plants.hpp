@@ -83,9 +83,9 @@ inline Params unreduced(Params params) {
 }
 
 inline std::vector<Box> hulls(const Example& plant, const std::string& observer, Params params,
-                              const std::string& backend = "zonotope") {
-  const auto made =
-      plugins().observer(observer, plant.model, plugins().backend(backend), std::move(params));
+                              const std::string& backend = "zonotope", Params sets = {}) {
+  const auto made = plugins().observer(
+      observer, plant.model, plugins().backend(backend, std::move(sets)), std::move(params));
   made->start();
   std::vector<Box> found;
   for (const Sample& sample : plant.samples)

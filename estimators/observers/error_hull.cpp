@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Boxes around all errors of an observer with one gain, which is never reduced. With E = Bw G_W, F
+// = Dv G_V and zonotopes around X0, W and V:
+//   previous   x⁺ = A x + B u + L (y - D u - C x),            M = A - L C,       D = [E, -L F]
+//   current    x⁺ = x̄ + Λ (y⁺ - D u⁺ - C x̄),  x̄ = A x + B u,  M = (I - Λ C) A,   D = [(I - Λ C) E,
+//   -Λ F]
+// and the estimate is x ± h with the half widths h of error_widths.hpp, which do not depend on the
+// data.
+#include "components.hpp"
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/core/rounding.hpp"
+#include "cordon/invariant/zonotope_enclosure.hpp"
+#include "gains/gain_certificate.hpp"
+#include "gains/rounded_products.hpp"
+#include "observer_parameters.hpp"
+#include "observers/error_widths.hpp"
+#include "observers/observer_gain.hpp"
+#include "observers/prediction.hpp"
+#include "observers/present_outputs.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+/// Rows of numbers that add up to one vector, x⁺ = X x + U u_before + Y y + V u_now + w, and their
+/// sizes before they were multiplied with each other.
+struct PointStep {
+  Matrix X, U, Y, V;
+  Vector w;
+
+  Vector operator()(VectorIn x, VectorIn u_before, VectorIn y, VectorIn u_now) const {
+    Vector sum = w;
+    sum += X * x;
+    sum += U * u_before;
+    sum += Y * y;
+    if (V.size() > 0) sum += V * u_now;
+    return sum;
+  }
+};
+
+/// One step of the centre and of the errors, for the outputs of a model.
+struct ErrorStep {
+  ErrorStep(const Model& model, const Matrix& L, GainForm form);
+
+  PointStep point, sizes;
+  Rounded M, D;
+};
+
+ErrorStep::ErrorStep(const Model& model, const Matrix& L, GainForm form) {
+  const LinearModel& m = model.linear;
+  const auto size = [](const auto& A) { return Matrix(A.cwiseAbs()); };
+  const Vector w = m.Bw * invariant::enclosing_zonotope(model.W).c,
+               v = m.Dv * invariant::enclosing_zonotope(model.V).c;
+  const Vector w_size = size(m.Bw) * invariant::enclosing_zonotope(model.W).c.cwiseAbs(),
+               v_size = size(m.Dv) * invariant::enclosing_zonotope(model.V).c.cwiseAbs();
+  const invariant::ClosedLoop loop = loop_of_errors(m, L, form);
+  M = {loop.value, loop.error};
+  const ErrorDisturbances d = error_disturbances(model, Matrix(0, 0), form);
+  D = less(d.E, times(L, d.N));
+  const Matrix LD = linalg::product(L, m.D), LD_size = size(L) * size(m.D);
+  point.Y = L;
+  sizes.Y = size(L);
+  if (form == GainForm::predictor) {
+    point.X = loop.value;
+    point.U = m.B - LD;
+    point.w = w - L * v;
+    sizes.X = size(m.A) + size(L) * size(m.C);
+    sizes.U = size(m.B) + LD_size;
+    sizes.w = w_size + size(L) * v_size;
+    return;
+  }
+  const Index n = m.states();
+  const Matrix rest = Matrix::Identity(n, n) - linalg::product(L, m.C),
+               rest_size = Matrix::Identity(n, n) + size(L) * size(m.C);
+  point.X = loop.value;
+  point.U = linalg::product(rest, m.B);
+  point.V = -LD;
+  point.w = rest * w - L * v;
+  sizes.X = rest_size * size(m.A);
+  sizes.U = rest_size * size(m.B);
+  sizes.V = LD_size;
+  sizes.w = rest_size * w_size + size(L) * v_size;
+}
+
+class ErrorHullObserver final : public Observer {
+ public:
+  ErrorHullObserver(const ObserverContext& context, const Params& params, ObserverGain gain,
+                    GainForm form)
+      : Observer(context.model, context.backend),
+        X0_(initial_set_from(model(), params)),
+        gain_(std::move(gain.gain)),
+        form_(form),
+        complete_(model(), gain_.L, form),
+        share_(rounding::gamma(8 * (model().states() + model().inputs() + model().outputs() +
+                                    model().disturbances() + model().noises()) +
+                               32)),
+        off_(complete_.M.value),
+        widths_(complete_.M, complete_.D) {}
+
+  LineForm initial_set() const override { return X0_; }
+  std::vector<Gain> gains() const override { return {gain_}; }
+  bool takes_missing_outputs() const override { return true; }
+  bool uses_outputs_of_its_time() const override { return form_ == GainForm::filter; }
+
+ private:
+  Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
+    const sets::Zonotope start =
+        invariant::enclosing_zonotope(X0 ? (*X0)->line_form() : X0_, "the initial set");
+    off_.start();
+    x_ = start.c;
+    if (form_ == GainForm::predictor) {
+      widths_.start(exactly(start.G));
+      return estimate();
+    }
+    const std::vector<Index> present = present_outputs(first);
+    const ErrorStep step(with_outputs(at_rest(model()), present), gain_.L(Eigen::all, present),
+                         form_);
+    off_.step(moved(step, Vector::Zero(first.u.size()), first));
+    const Rounded rest = estimators::times(step.M.value, exactly(start.G));
+    const Matrix lost = linalg::product(step.M.error, start.G.cwiseAbs());
+    Rounded R = exactly(Matrix(x_.size(), rest.value.cols() + step.D.value.cols()));
+    R.value << rest.value, step.D.value;
+    R.error << rest.error + 2 * lost, step.D.error;
+    widths_.start(R);
+    return estimate();
+  }
+
+  Enclosure do_step(const Sample& before, const Sample& now) override {
+    return timed(Phase::predict, [&] {
+      const Sample& used = form_ == GainForm::filter ? now : before;
+      if (used.is_complete()) {
+        off_.step(moved(complete_, before.u, used));
+        widths_.step();
+        return estimate();
+      }
+      const auto others = others_.at(used, [&](const std::vector<Index>& present) {
+        return std::make_shared<ErrorStep>(with_outputs(model(), present),
+                                           gain_.L(Eigen::all, present), form_);
+      });
+      const Vector off = others->M.value.cwiseAbs() * off_.bound();
+      off_.start();
+      off_.step(moved(*others, before.u, used) + 2 * off);
+      widths_.step_by(others->M, others->D);
+      return estimate();
+    });
+  }
+
+  void do_replace(const Enclosure& X) override {
+    const Box hull = X->interval_hull();
+    if (hull.is_empty()) return;  // of nothing every box is an enclosure
+    if (!hull.is_bounded())
+      throw Error(Errc::unsupported, "\"error_hull\" goes on from bounded sets only");
+    x_ = hull.center();
+    const Matrix half = Vector((hull.upper - x_).cwiseMax(x_ - hull.lower)).asDiagonal();
+    off_.start();
+    widths_.start({half, 4 * rounding::unit * half});
+  }
+
+  /// Moves x to the next time; by how much rounding can have moved it.
+  Vector moved(const ErrorStep& step, VectorIn u_before, const Sample& used) {
+    const Sample all = used.is_complete() ? Sample{} : without_missing(used);
+    const Vector& y = used.is_complete() ? used.y : all.y;
+    const Vector size =
+        step.sizes(x_.cwiseAbs(), u_before.cwiseAbs(), y.cwiseAbs(), used.u.cwiseAbs());
+    x_ = step.point(x_, u_before, y, used.u);
+    return 2 * share_ * size;
+  }
+
+  Enclosure estimate() const {
+    const Vector half = widths_.half_widths() + off_.bound();
+    const Vector room = 4 * rounding::unit * (half + x_.cwiseAbs());
+    Enclosure box = backend().box({x_ - half - room, x_ + half + room});
+    box.tightness = Tightness::outer;
+    return box;
+  }
+
+  LineForm X0_;
+  Gain gain_;
+  GainForm form_;
+  ErrorStep complete_;
+  PerOutputs<ErrorStep> others_;
+  double share_;
+  Vector x_;
+  ErrorMemory off_;  ///< what the numbers of x are off by
+  ErrorWidths widths_;
+};
+
+GainForm form_from(const Params& params) {
+  return params.text("measurement") == "current" ? GainForm::filter : GainForm::predictor;
+}
+
+std::vector<Diagnostic> check_error_hull(const ObserverContext& context, const Params& params) {
+  std::vector<Diagnostic> problems;
+  if (context.model.linear.is_descriptor()) {
+    return {{"/type", "\"error_hull\" takes systems of type \"lti\"",
+             "use the observer \"descriptor\""}};
+  }
+  check_bounded_start(context, params, problems);
+  check_noises(context, problems);
+  if (!problems.empty()) return problems;  // gains are designed for these sets
+  check_observer_gain(context, params, "gain", steady_kalman(), problems, form_from(params));
+  return problems;
+}
+
+constexpr const char* error_hull_details =
+    "The observer of one point, x⁺ = x̄ + Λ (y⁺ - D u⁺ - C x̄) with x̄ = A x + B u (measurement "
+    "current), or\n"
+    "x⁺ = A x + B u + L (y - D u - C x) (previous), with the box around all errors that X0, W and "
+    "V "
+    "allow:\n"
+    "    h = |Mᵏ R| 1 + Σ |Mʲ D| 1,   M = (I - Λ C) A or A - L C.\n"
+    "h does not depend on the data, is bounded for ever, and nothing is reduced: the boxes are the "
+    "hulls that \"gain_correction\"\n"
+    "(current) or \"luenberger\" (previous) would have with the same gain and an unlimited budget. "
+    "Rounding errors are added, on\n"
+    "any backend. Where outputs are missing the errors go on from their box. Estimates are never "
+    "empty.";
+
+}  // namespace
+
+CORDON_COMPONENT(observer, error_hull) {
+  ParamSchema schema;
+  add_gain_parameter(schema, "gain",
+                     "one gain for all times: a matrix with a row per state and a column per "
+                     "output, or a designer of one; absent: \"kalman\" with \"steady\"");
+  schema.choice("measurement",
+                "are estimates corrected by the outputs of their time (current), or made of those "
+                "before (previous)?",
+                {"current", "previous"}, "current");
+  schema.set("initial_set", "set of initial states in place of the system's X0, bounded");
+  registrar.add(ObserverEntry{
+      {"error_hull",
+       "boxes around all errors of one gain, their half widths known in advance; standard linear "
+       "systems, any backend",
+       "Tang2019", std::move(schema), error_hull_details},
+      check_error_hull,
+      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+        const GainForm form = form_from(params);
+        return std::make_unique<ErrorHullObserver>(
+            context, params, observer_gain(context, params, "gain", steady_kalman(), form), form);
+      }});
+}
+
+}  // namespace cordon::estimators
