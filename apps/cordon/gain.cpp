@@ -108,7 +108,7 @@ CORDON_COMMAND(gain) {
   command->footer(
       "Matrices stand below the table as a study takes them: \"gain\": [[...], ...]. Of gains that "
       "follow the set it is that of\n"
-      "the steady state. The spectral radius of A - L C and the norm are proven bounds; "
+      "the steady state. The spectral radius of the errors and the norm are proven bounds; "
       "\"cordon info gain NAME\" tells how a\n"
       "gain is designed. A study without \"data\" is enough. Of a sweep, the first values are "
       "taken.");

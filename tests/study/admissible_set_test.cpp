@@ -25,8 +25,8 @@ Json tanks(double largest) {
   const Json gain = Json::parse("[[0.05, 0], [0, 0.05]]");
   const Json set = {{"type", "box"}, {"lower", {0, 0}}, {"upper", {largest, largest}}};
   for (const char* backend : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
-    for (const char* observer : {"prediction_correction", "luenberger", "zonotope_uncertain",
-                                 "interval_trajectory", "integrated"}) {
+    for (const char* observer : {"prediction_correction", "gain_correction", "luenberger",
+                                 "zonotope_uncertain", "interval_trajectory", "integrated"}) {
       Json spec = {{"type", observer}, {"admissible_set", set}};
       if (std::string(observer) != "prediction_correction") spec["gain"] = gain;
       study["pipelines"].push_back({{"name", std::string(backend) + " " + observer},

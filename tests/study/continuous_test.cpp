@@ -133,8 +133,8 @@ TEST_CASE("no observer loses a state whose disturbance jumps inside samples") {
   study["pipelines"] = Json::array();
   const Json gain = Json::parse("[[0.5], [1]]");
   for (const char* backend : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
-    for (const char* observer :
-         {"prediction_correction", "luenberger", "zonotope_uncertain", "interval_trajectory"}) {
+    for (const char* observer : {"prediction_correction", "gain_correction", "error_hull",
+                                 "luenberger", "zonotope_uncertain", "interval_trajectory"}) {
       Json spec = {{"type", observer}};
       if (std::string(observer) != "prediction_correction") spec["gain"] = gain;
       study["pipelines"].push_back({{"name", std::string(backend) + " " + observer},

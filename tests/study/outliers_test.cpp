@@ -14,8 +14,8 @@ using test::Outcome;
 namespace {
 
 const char* const backends[] = {"interval", "zonotope", "constrained_zonotope", "line_zonotope"};
-const char* const observers[] = {"prediction_correction", "luenberger", "zonotope_uncertain",
-                                 "interval_trajectory", "integrated"};
+const char* const observers[] = {"prediction_correction", "gain_correction",     "luenberger",
+                                 "zonotope_uncertain",    "interval_trajectory", "integrated"};
 
 using Run = test::StudyRun;
 

@@ -240,11 +240,12 @@ class StudyMaker {
     if (constrained) correction["max_constraints"] = constraints;
     list.push_back(std::move(correction));
     if (n_ > 4 || start_ == Start::unknown) return list;
-    for (const char* type : {"luenberger", "zonotope_uncertain"}) {
+    for (const char* type : {"luenberger", "zonotope_uncertain", "gain_correction"}) {
       list.push_back(
           {{"type", type}, {"gain", {{"type", "kalman"}}}, {"max_generators", generators}});
     }
-    list.push_back({{"type", "interval_trajectory"}, {"gain", {{"type", "kalman"}}}});
+    for (const char* type : {"interval_trajectory", "error_hull"})
+      list.push_back({{"type", type}, {"gain", {{"type", "kalman"}}}});
     return list;
   }
 
