@@ -33,6 +33,25 @@ TEST_CASE("Two intervals apart") {
                   make_zonotope(Vector{{5}}, Matrix{{1}}));
 }
 
+TEST_CASE("Boxes that differ by the last place") {
+  for (const char* rounding : {"nominal", "outward"}) {
+    for (const auto& backend : backends(rounding)) {
+      CAPTURE(backend->info().name);
+      CAPTURE(rounding);
+      const auto box = [&](double lower, double upper) {  // without rounding
+        return backend->convex_hull(backend->point(Vector{{lower}}), backend->point(Vector{{upper}}));
+      };
+      const double above = 1 + 0x1p-52, below = std::nextafter(.1, 0);
+      // representations whose hull is the box itself hold it without rounding
+      if (box(0, 1)->interval_hull().upper[0] != 1) continue;
+      CHECK(box(0, 1)->is_disjoint_from(*box(above, 2)) != Answer::no);
+      CHECK(box(0, 1)->is_disjoint_from(*box(1.000001, 2)) == Answer::yes);
+      CHECK(box(below, .7)->is_subset_of(*box(.1, .7)) != Answer::yes);
+      CHECK(box(.2, .6)->is_subset_of(*box(.1, .7)) != Answer::no);
+    }
+  }
+}
+
 TEST_CASE("Two zonotopes that meet") {
   const LineForm X = make_zonotope(Vector{{.7, 1}}, Matrix{{1, -.2, .5}, {1, .4, .2}});
   const LineForm Y =

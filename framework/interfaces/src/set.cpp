@@ -33,6 +33,28 @@ void require_same(const Set& X, const Set& Y, const char* what) {
 /// Must answers hold for the numbers as stored?
 bool is_outward(const Set& X) { return X.backend().info().rounding != Rounding::nominal; }
 
+/// The form of a box: its centre and radius are rounded outward where they are no doubles, and what
+/// the form has beyond the box is not the box's.
+bool is_box_form(const LineForm& X) {
+  const auto axis_parallel = [](const Matrix& columns) {
+    for (Index j = 0; j < columns.cols(); ++j) {
+      if ((columns.col(j).array() != 0).count() > 1) return false;
+    }
+    return true;
+  };
+  return X.constraints() == 0 && axis_parallel(X.G) && axis_parallel(X.M);
+}
+
+/// Boxes around two sets that have no point in common, compared without rounding.
+bool are_apart(const Box& X, const Box& Y) {
+  return (X.lower.array() > Y.upper.array()).any() || (Y.lower.array() > X.upper.array()).any();
+}
+
+bool is_within(const Box& X, const Box& Y) {
+  return X.is_empty() ||
+         ((X.lower.array() >= Y.lower.array()).all() && (X.upper.array() <= Y.upper.array()).all());
+}
+
 Answer only(Answer allowed, Answer answer) { return answer == allowed ? answer : Answer::unknown; }
 
 }  // namespace
@@ -51,12 +73,16 @@ Answer Set::contains(VectorIn x, Certificate* why) const {
 Answer Set::is_subset_of(const Set& other, Certificate* why) const {
   require_same(*this, other, "is_subset_of");
   if (this == &other) return Answer::yes;
+  const LineForm right = other.line_form();
   const Answer answer = is_outward(*this) || is_outward(other)
-                            ? outward::is_subset(line_form(), other.line_form(), why)
-                            : is_subset(line_form(), other.line_form(), why);
+                            ? outward::is_subset(line_form(), right, why)
+                            : is_subset(line_form(), right, why);
   // `yes` needs an exact right-hand side, `no` an exact left-hand side; an outer form of the other
   // one only strengthens it
   if (answer == Answer::yes && !other.exact_exchange() && is_empty() != Answer::yes)
+    return Answer::unknown;
+  if (answer == Answer::yes && is_box_form(right) &&
+      !is_within(interval_hull(), other.interval_hull()))
     return Answer::unknown;
   if (answer == Answer::no && !exact_exchange()) return Answer::unknown;
   return answer;
@@ -64,7 +90,13 @@ Answer Set::is_subset_of(const Set& other, Certificate* why) const {
 
 Answer Set::is_disjoint_from(const Set& other, Certificate* why) const {
   require_same(*this, other, "is_disjoint_from");
-  const Answer answer = is_disjoint(line_form(), other.line_form(), why);
+  const LineForm left = line_form(), right = other.line_form();
+  Answer answer = is_disjoint(left, right, why);
+  if (answer == Answer::no && is_box_form(left) && is_box_form(right) &&
+      are_apart(interval_hull(), other.interval_hull())) {
+    answer = Answer::unknown;
+    if (why) *why = {};
+  }
   return exact_exchange() && other.exact_exchange() ? answer : only(Answer::yes, answer);
 }
 
