@@ -162,9 +162,12 @@ void Observer::leave_out_outliers(Index most, Index window) {
   outlier_window_ = window;
 }
 
+Index Observer::estimated_time(Index k) const { return std::max(k - lag(), begin_); }
+
 Estimate Observer::advance(const Sample& now) {
-  Estimate estimate{now.k, {}, Answer::unknown, {}};
-  estimate.set = before_ ? do_step(*before_, now) : do_start(X0_, now);
+  Estimate estimate{estimated_time(now.k), {}, Answer::unknown, {}};
+  held_ = before_ ? do_step(*before_, now) : do_start(X0_, now);
+  estimate.set = estimate_of(held_);
   const Tightness claimed = meet(meet(estimate.set.tightness, claim()), inherited_);
   estimate.set.tightness = claimed;
   const bool is_cut = admissible_.set && cut(estimate.set);
@@ -175,6 +178,7 @@ Estimate Observer::advance(const Sample& now) {
   }
   is_cut_to_nothing_ = is_cut_to_nothing_ || (is_cut && estimate.consistent == Answer::no);
   if (is_cut && estimate.consistent != Answer::no) do_replace(estimate.set);
+  if (lag() == 0) held_ = estimate.set;
   return estimate;
 }
 
@@ -239,7 +243,7 @@ Estimate Observer::advance_without_outliers(const Sample& now, std::optional<Sam
   }
   std::vector<Index> missed;
   const bool empty_before = estimate.consistent == Answer::no;
-  if (!empty_before) missed = outliers(*estimate.set, now);
+  if (!empty_before) missed = outliers(*present_of(held_), now);
   if (two_steps) {
     go_back();
     estimate = advance(missed.empty() ? now : missing_outputs(now, missed));
@@ -267,9 +271,9 @@ void Observer::explain(const Sample& now) {
     bool before = present.empty() || !uses_outputs_of_its_time();
     if (!before) {
       go_back();
-      const Estimate predicted = advance(missing_outputs(now, present));
-      before = predicted.consistent == Answer::no;
-      if (!before && outliers(*predicted.set, now).empty()) contradiction_ = Contradiction{now.k};
+      before = advance(missing_outputs(now, present)).consistent == Answer::no;
+      if (!before && outliers(*present_of(held_), now).empty())
+        contradiction_ = Contradiction{now.k};
     }
     if (before) contradiction_ = Contradiction{now.k, -1, 0, true};
   } catch (const Error& error) {  // why an estimate is empty was not asked for
@@ -286,31 +290,34 @@ Estimate Observer::step(const Sample& now) {
   left_out_.clear();
   contradiction_.reset();
   if (inconsistent_) {
-    Estimate estimate{now.k, backend_->empty(model_.states()), Answer::no, {}};
+    Estimate estimate{estimated_time(now.k), backend_->empty(model_.states()), Answer::no, {}};
     estimate.set->is_empty(&estimate.why);
     before_ = now;
     return estimate;
   }
   if (model_.region) expect_region(now);
-  if (!before_)  // of other data
-    std::erase_if(outlier_times_, [&](Index t) { return t >= now.k; });
+  if (!before_) {
+    begin_ = now.k;
+    std::erase_if(outlier_times_, [&](Index t) { return t >= now.k; });  // of other data
+  }
   std::optional<Sample> used;
   const bool watches = may_leave_out(now.k) && !present_outputs(now).empty();
   Estimate estimate = watches ? advance_without_outliers(now, used) : advance(now);
   inconsistent_ = estimate.consistent == Answer::no;
+  const Enclosure held = held_;
   if (inconsistent_ && !watches && takes_missing_outputs()) explain(now);
-  last_ = estimate.set;
+  last_ = held;
   last_inherited_ = inherited_;
   before_ = used ? std::move(*used) : now;
   if (model_.region)
-    left_region_ = detail::why_outside(*model_.region, last_->interval_hull(), now);
+    left_region_ = detail::why_outside(*model_.region, present_of(last_)->interval_hull(), now);
   return estimate;
 }
 
 Box Observer::predicted() {
   if (!before_) return backend_->import(X0_ ? (*X0_)->line_form() : initial_set())->interval_hull();
   if (!disturbance_.set) disturbance_ = backend_->import(model_.W);
-  return detail::predicted_hull(model_.linear, *last_, before_->u, *disturbance_);
+  return detail::predicted_hull(model_.linear, *present_of(last_), before_->u, *disturbance_);
 }
 
 void Observer::expect_region(const Sample& now) {
@@ -329,6 +336,7 @@ void Observer::replace(Enclosure X) {
     throw Error(Errc::dimension, "the replacing set has another dimension than the state");
   inconsistent_ = false;
   inherited_ = last_inherited_ = Tightness::exact;
+  begin_ = before_->k;
   last_ = X;
   if (model_.region)
     left_region_ = detail::why_outside(*model_.region, X->interval_hull(), *before_);

@@ -11,9 +11,10 @@
 
 namespace cordon {
 
-/// A set that contains every state consistent with model, bounds and data up to time k.
+/// A set that contains every state of time k that is consistent with model, bounds and the data up
+/// to the sample that gave it.
 struct Estimate {
-  Index k = 0;  ///< may lag behind the sample
+  Index k = 0;  ///< lags behind the sample by Observer::lag
   Enclosure set;
   Answer consistent =
       Answer::unknown;  ///< `no`: the set is proven empty, so the data contradict model or bounds
@@ -58,7 +59,8 @@ class Observer {
   /// Errc::unsupported for missing outputs that the observer does not take, Errc::not_enclosed
   /// where the model's region is not shown to hold the state and the input.
   Estimate step(const Sample& now);
-  /// Replaces the current set and keeps the time.
+  /// Replaces the set of states at the time of the last sample, and keeps the time; of an observer
+  /// that lags, nothing is left of what it knew of earlier times.
   void replace(Enclosure X);
 
   /// From now on outputs that miss the prediction are left out, as if they were missing, in at most
@@ -89,12 +91,18 @@ class Observer {
   /// the steady state.
   virtual std::vector<Gain> gains() const { return {}; }
 
-  /// What the recursion itself promises where every set operation in it is exact. `exact`: its
-  /// estimate at k is then the set of all states that the model, the assumptions and all samples up
-  /// to k allow. No recursion is that by itself: one that leaves out a measurement, an input or the
-  /// previous sample only encloses this set, however exact its operations are. The claim of an
-  /// estimate is the meet of this one and of its set's, so that `exact` is said only where an
-  /// observer states it here, and `cordon verify` compares the sets.
+  /// By how many samples estimates lag. The sample of time k gives the estimate of time
+  /// max(k - lag, b), b being the time of the first sample since the start, or of the last one
+  /// before `replace`; it uses all samples from b up to k. Before b + lag all are of time b, each
+  /// one knowing a sample more, and the one of b + lag is the last of them.
+  virtual Index lag() const { return 0; }
+
+  /// What the recursion itself promises where every set operation in it is exact. `exact`: what the
+  /// sample of time k gives is then the set of all states that the model, the assumptions and all
+  /// samples up to k allow at the estimate's time. No recursion is that by itself: one that leaves
+  /// out a measurement, an input or the previous sample only encloses this set, however exact its
+  /// operations are. The claim of an estimate is the meet of this one and of its set's, so that
+  /// `exact` is said only where an observer states it here, and `cordon verify` compares the sets.
   virtual Tightness claim() const { return Tightness::outer; }
 
   /// Does each estimate hold all successors of the one before that are consistent with the samples?
@@ -124,12 +132,12 @@ class Observer {
   const Model& model() const { return model_; }
   const SetBackend& backend() const { return *backend_; }
 
-  /// For constructors: `admissible` holds the state at all times. From now on an estimate that is
-  /// not within it is cut by it, reduced to the budget, and takes the place of the observer's own
-  /// set, as by `replace`. A cut by which the set's interval hull becomes no narrower is left out:
-  /// representations without exact intersections may enclose it by more than there was; the
-  /// estimate is claimed `outer` then. Costs the hull of every estimate, and an intersection where
-  /// it is cut.
+  /// For constructors of observers without a lag: `admissible` holds the state at all times. From
+  /// now on an estimate that is not within it is cut by it, reduced to the budget, and takes the
+  /// place of the observer's own set, as by `replace`. A cut by which the set's interval hull
+  /// becomes no narrower is left out: representations without exact intersections may enclose it by
+  /// more than there was; the estimate is claimed `outer` then. Costs the hull of every estimate,
+  /// and an intersection where it is cut.
   void admit(const LineForm& admissible, Budget budget);
 
   /// Of an output over a set of states, and the size of known terms in it.
@@ -138,6 +146,12 @@ class Observer {
   };
   /// By default of a linear model.
   virtual OutputBounds output_bounds(const Set& X, Index output, const Sample& now);
+
+  /// Observers that lag hold more than their estimates. Of what `do_start` and `do_step` return,
+  /// which is what `do_replace` is given to go back to: the estimate; and the states at the time of
+  /// the last sample, which outliers and the model's region are judged by. By default the same.
+  virtual Enclosure estimate_of(const Enclosure& held) const { return held; }
+  virtual Enclosure present_of(const Enclosure& held) const { return held; }
 
   enum class Phase { predict, correct, reduce };
   /// Runs `work` and books its time to the phase.
@@ -150,7 +164,7 @@ class Observer {
   }
 
  private:
-  /// The estimate at the first sample; X0 is of the observer's backend.
+  /// The estimate at the first sample, or what it is made of; X0 is of the observer's backend.
   virtual Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) = 0;
   virtual Enclosure do_step(const Sample& before, const Sample& now) = 0;
   virtual void do_replace(const Enclosure& X) = 0;
@@ -168,6 +182,7 @@ class Observer {
 
   /// Cuts the estimate by the admissible set; false: it is as it was.
   bool cut(Enclosure& X);
+  Index estimated_time(Index k) const;
   /// One step, with what is asked of its estimate.
   Estimate advance(const Sample& now);
   /// Goes back to the sample before.
@@ -192,7 +207,9 @@ class Observer {
   Budget admissible_budget_;
   std::optional<Enclosure> X0_;
   std::optional<Sample> before_;
-  Enclosure last_;  ///< estimate of `before_`
+  Index begin_ = 0;  ///< nothing is known of times before
+  Enclosure held_;   ///< what the last `advance` has led to
+  Enclosure last_;   ///< the same of `before_`
   /// What later estimates can claim at most, for the observer's own set may not tell what a cut has
   /// left out; and at `before_`.
   Tightness inherited_ = Tightness::exact, last_inherited_ = Tightness::exact;
