@@ -51,8 +51,8 @@ class Effectiveness {
 
   /// Does A or B have a radius?
   bool has_open_states() const { return open_states_; }
-  /// The box that interval matrices A and B add to x⁺ for x ∈ X; coordinates that nothing bounds
-  /// are free.
+  /// The box that interval matrices A and B add to x⁺ for x ∈ X, or for the first coordinates x of
+  /// the points of X; coordinates that nothing bounds are free.
   Enclosure open_states(const Enclosure& X, VectorIn u) const;
 
   /// ζ, up to rounding outwards; 0 for outputs without a range, infinite where nothing bounds it.
@@ -63,9 +63,9 @@ class Effectiveness {
   /// The set of γ: a unit box with one coordinate per output with a range.
   const Enclosure& output_factors() const { return output_factors_; }
 
-  /// The part of X ∋ x that the measurement allows; C is the model's in the coordinates of X, which
-  /// are the model's own where C is an interval matrix. Outer if sensors have ranges, or C is one.
-  /// Missing outputs say nothing.
+  /// The part of X ∋ x that the measurement allows; C is the model's in the coordinates of X, the
+  /// first of which are the model's own where C is an interval matrix. Outer if sensors have
+  /// ranges, or C is one. Missing outputs say nothing.
   Enclosure correct(const Enclosure& X, MatrixIn C, const Sample& now) const;
 
   /// The claim of a recursion in which inputs enter by these matrices at the same time or one step

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prediction and correction for x⁺ = A x + B u + Bw w, y = C x + D u + Dv v on any backend:
-//   X̂_0 = {x ∈ X0 : y_0 - D u_0 - C x ∈ Dv V}
-//   X̄_k = A X̂_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W,   X̂_k = {x ∈ X̄_k : y_k - D u_k - C x ∈ Dv V}, reduced to
-//   the budget.
-// Ranges of effectiveness and interval matrices: effectiveness.hpp.
-// Exact with constrained and line zonotopes until a reduction bites; zonotopes intersect strip by
-// strip, intervals contract.
+// Prediction and correction on any backend (corrected_recursion.hpp), reduced to the budget. Exact
+// with constrained and line zonotopes until a reduction bites; zonotopes intersect strip by strip,
+// intervals contract.
 #include "components.hpp"
 #include "observer_parameters.hpp"
-#include "observers/prediction.hpp"
+#include "observers/corrected_recursion.hpp"
 
 namespace cordon::estimators {
 
@@ -20,14 +16,13 @@ class PredictionCorrection final : public Observer {
       : Observer(context.model, context.backend),
         budget_(budget_from(params)),
         X0_(initial_set_from(model(), params)),
-        effectiveness_(model(), backend()),
-        prediction_(model(), backend(), effectiveness_),
-        recursion_(effectiveness_.recursion({&model().linear.B, &model().linear.D})) {
+        recursion_(model(), backend()),
+        step_(model().linear, 1, 1) {
     if (params.has("admissible_set")) admit(params.set_form("admissible_set"), budget_from(params));
   }
 
   LineForm initial_set() const override { return X0_; }
-  Tightness claim() const override { return recursion_; }
+  Tightness claim() const override { return recursion_.claim(); }
   bool follows_its_sets() const override { return true; }
   bool takes_missing_outputs() const override { return true; }
 
@@ -38,7 +33,7 @@ class PredictionCorrection final : public Observer {
 
   Enclosure do_step(const Sample& before, const Sample& now) override {
     const Enclosure predicted =
-        timed(Phase::predict, [&] { return prediction_.next(X_, before.u); });
+        timed(Phase::predict, [&] { return recursion_.predicted(X_, step_, before.u); });
     return X_ = corrected(predicted, now);
   }
 
@@ -46,16 +41,15 @@ class PredictionCorrection final : public Observer {
 
   Enclosure corrected(const Enclosure& X, const Sample& now) {
     const Enclosure narrowed =
-        timed(Phase::correct, [&] { return effectiveness_.correct(X, model().linear.C, now); });
+        timed(Phase::correct, [&] { return recursion_.corrected(X, step_, now); });
     return timed(Phase::reduce, [&] { return backend().reduce(narrowed, budget_); });
   }
 
   Budget budget_;
   LineForm X0_;
+  CorrectedRecursion recursion_;
+  StackStep step_;
   Enclosure X_;
-  Effectiveness effectiveness_;
-  Prediction prediction_;
-  Tightness recursion_;
 };
 
 std::vector<Diagnostic> check_prediction_correction(const ObserverContext& context,
