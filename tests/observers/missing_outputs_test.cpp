@@ -74,6 +74,7 @@ std::vector<Choice> choices(const Matrix& gain) {
   for (const char* backend : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
     const bool bounded_exact = std::string(backend) == "constrained_zonotope";
     all.push_back({backend, "prediction_correction", {}});
+    all.push_back({backend, "fixed_lag", Params().set("lag", std::int64_t{1})});
     all.push_back({backend, "luenberger", Params().set("gain", given)});
     all.push_back({backend, "luenberger", Params().set("gain", kalman)});
     all.push_back({backend, "gain_correction", Params().set("gain", given)});

@@ -310,18 +310,23 @@ std::vector<Diagnostic> check_consistency_bank(const DiagnoserContext& context,
       problems.push_back({"/restart_set", "is empty",
                           "give a set that holds the state at all times, or leave it out"});
     }
-  } else if (problems.empty() && params.text("start") == "nominal" &&
-             params.text("changes") == "restart") {
-    const auto observer = context.make->make_observer(
-        params.component("observer"), {context.bank[context.bank.nominal].model, context.backend});
-    if (!ConsistencyBank::restart_set(context, params, *observer)) {
-      problems.push_back({"/restart_set",
-                          "is missing: with \"start\": \"nominal\" the other modes begin at a "
-                          "reset, and the backend \"" +
-                              context.backend->info().name + "\" cannot represent the whole space",
-                          "give a set that holds the state at all times, use \"start\": \"any\", "
-                          "or \"line_zonotope\""});
-    }
+  }
+  if (!problems.empty()) return problems;
+  const auto observer = context.make->make_observer(
+      params.component("observer"), {context.bank[context.bank.nominal].model, context.backend});
+  if (observer->lag() > 0) {
+    problems.push_back({"/observer",
+                        "gives estimates of earlier times, and a bank tells of the present one",
+                        "use an observer without a lag"});
+  } else if (!params.has("restart_set") && params.text("start") == "nominal" &&
+             params.text("changes") == "restart" &&
+             !ConsistencyBank::restart_set(context, params, *observer)) {
+    problems.push_back({"/restart_set",
+                        "is missing: with \"start\": \"nominal\" the other modes begin at a "
+                        "reset, and the backend \"" +
+                            context.backend->info().name + "\" cannot represent the whole space",
+                        "give a set that holds the state at all times, use \"start\": \"any\", "
+                        "or \"line_zonotope\""});
   }
   return problems;
 }
