@@ -212,6 +212,13 @@ std::string widths_text(const RunOutcome& outcome, const Labels& labels, const P
     }
   }
   std::string text = titled("Widths at the last step", rows, paint);
+  for (const PipelineOutcome* pipeline : shown) {
+    const Index lag = pipeline->estimation()->lag;
+    if (lag == 0) continue;
+    text.pop_back();
+    text += fmt::format("{}: its last step is {} before the last sample, all of which it uses\n\n",
+                        pipeline->name, count(lag, "step"));
+  }
   if (listed < states && !shown.empty()) {
     text.pop_back();
     text += fmt::format("… and {} more states, in steps.csv\n\n", states - listed);

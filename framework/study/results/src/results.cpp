@@ -191,7 +191,9 @@ void Results::begin_estimation(const PipelineSpec& spec, std::optional<Rounding>
       results_.key("restart_set");
       write(results_, *assumptions->restart_set);
     }
-    results_.member("follows_its_sets", assumptions->follows_its_sets).end_object();
+    results_.member("follows_its_sets", assumptions->follows_its_sets);
+    if (assumptions->lag > 0) results_.member("lag", assumptions->lag);
+    results_.end_object();
   } else {
     results_.null();
   }

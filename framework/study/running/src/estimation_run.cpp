@@ -3,6 +3,7 @@
 #include <cmath>
 #include <deque>
 
+#include "cordon/core/tolerances.hpp"
 #include "pipeline_run.hpp"
 #include "study/checks/assumption_check.hpp"
 #include "study/checks/growth.hpp"
@@ -31,6 +32,8 @@ struct Phases {
 constexpr Index nominal_mode = 0;              // in bank_of(study)
 constexpr std::size_t most_left_out = 10'000;  // in results
 
+Vector reach_of(const LineForm& X) { return X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum(); }
+
 /// An observer over its own stream of the data, and what became of it so far.
 class EstimationRun final : public PipelineRun {
  public:
@@ -43,7 +46,7 @@ class EstimationRun final : public PipelineRun {
     found_.observer = observer_spec_.type;
   }
 
-  std::int64_t done() const override { return outcome_.steps; }
+  std::int64_t done() const override { return samples_; }
   std::int64_t total() const override { return total_; }
 
  private:
@@ -56,6 +59,7 @@ class EstimationRun final : public PipelineRun {
     observer_->start();
     assumptions_ = {observer_->initial_set(), std::nullopt, observer_->follows_its_sets()};
     assumptions_->admissible_set = observer_->admissible_set();
+    assumptions_->lag = found_.lag = observer_->lag();
     PipelineAssumptions assumed{.initial_set = assumptions_->initial_set,
                                 .exact_data = rounding() != Rounding::nominal};
     if (restarts()) assumptions_->restart_set = spec.restart_set;
@@ -76,6 +80,7 @@ class EstimationRun final : public PipelineRun {
     if (!record || gives_up(outcome_.steps)) return false;
     if (context_.results) context_.results->data(*record);
     estimate(*record);
+    ++samples_;
     return true;
   }
 
@@ -132,6 +137,7 @@ class EstimationRun final : public PipelineRun {
     std::optional<Box> inner;
     const MetricValues* values = nullptr;
     double hull_us = 0;
+    bool is_told = false;
     nominal_ = nominal_ && given.mode.value_or(nominal_mode) == nominal_mode;
     const bool anew = restarts() && was_empty_;
     seen_.reset();
@@ -140,6 +146,10 @@ class EstimationRun final : public PipelineRun {
       tell_contradiction(given);
       const Record& record = seen_ ? *seen_ : given;
       was_empty_ = estimate->consistent == Answer::no;
+      take(record, anew);
+      is_told = is_last_of_its_time(*estimate, record.sample.k);
+      if (!is_told) return;
+      told_ = estimate->k;
       const Clock::time_point begin = Clock::now();
       hull = estimate->consistent == Answer::no
                  ? Box::empty(estimate->set->dim())
@@ -147,18 +157,18 @@ class EstimationRun final : public PipelineRun {
       hull_us = seconds_since(begin) * 1e6;
       inner = observer_->inner_estimate();
       if (inner) inner_.step(estimate->k, *inner, hull);
-      const Vector* truth = judge(record, *estimate, anew);
+      const Vector* truth = judge(record.sample.k, *estimate);
       const bool assumptions_hold = nominal_ && !check_->excuses(record.sample.k, since_);
       values = &board_->step({*estimate, hull, truth, assumptions_hold, observer_->times()});
       if (results) results->check_columns(*values);
     });
-    if (failed()) return;
+    if (failed() || !is_told) return;
     if (found_.inconsistent_from < 0 || (restarts() && !was_empty_))
       phases_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
     count(*estimate, hull);
     if (results)
       results->estimate({*estimate, hull, hull_proofs_, inner, *values, observer_->times(), hull_us,
-                         observer_->left_out()});
+                         found_.lag > 0 ? nothing_left_out_ : observer_->left_out()});
     growth_.step(estimate->k, hull);
     found_.last_hull = std::move(hull);
   }
@@ -182,15 +192,25 @@ class EstimationRun final : public PipelineRun {
     if (context_.results) context_.results->end_estimation(outcome_, summary);
   }
 
-  /// Looks at assumptions and containment; returns the truth at the estimate's time, if the data
-  /// have it.
-  const Vector* judge(const Record& record, const Estimate& estimate, bool anew) {
+  /// Of observers that lag, several samples give an estimate of their first time, the last of which
+  /// is told of. One that is proven empty already is told of at once.
+  bool is_last_of_its_time(const Estimate& estimate, Index k) const {
+    const bool is_last = k - estimate.k >= found_.lag || estimate.consistent == Answer::no;
+    return is_last && estimate.k > told_;
+  }
+
+  /// Looks at the assumptions, and keeps the truth until its estimate comes.
+  void take(const Record& record, bool anew) {
     check_->step(record);
     if (anew) check_->begun_anew_from(spec_.estimation()->restart_set);
-    if (!record.truth) return nullptr;
-    passed_.push_back({record.sample, *record.truth});
+    if (record.truth) passed_.push_back({record.sample, *record.truth});
+  }
+
+  /// Looks at containment; returns the truth at the estimate's time, if the data have it. `k`: of
+  /// the sample.
+  const Vector* judge(Index k, const Estimate& estimate) {
     while (!passed_.empty() &&
-           passed_.front().sample.k < estimate.k) {  // estimates may lag behind the samples
+           passed_.front().sample.k < estimate.k) {  // estimates lag behind the samples
       before_ = std::move(passed_.front().sample);
       passed_.pop_front();
     }
@@ -198,7 +218,6 @@ class EstimationRun final : public PipelineRun {
     const Vector& truth = passed_.front().truth;
     if (found_.outside_from < 0 && is_outside(estimate, truth)) {
       found_.outside_from = estimate.k;
-      const Index k = record.sample.k;
       if (own_model_ && nominal_ && !check_->excuses(k, since_) &&
           !check_->excuses_by_rounding(k, barely_outside(estimate.set->line_form(), truth), since_))
         outcome_.violated_at = estimate.k;
@@ -211,7 +230,9 @@ class EstimationRun final : public PipelineRun {
     if (estimate.consistent == Answer::no) return true;
     const LineForm X = estimate.set->line_form();
     const bool follows = before_ && before_->k + 1 == estimate.k;
-    const Vector margin = rounding_->next(X, follows ? &*before_ : nullptr, passed_.front().sample);
+    Vector margin = rounding_->next(X, follows ? &*before_ : nullptr, passed_.front().sample);
+    if (found_.lag > 0)  // of later samples, which narrow it too, the margin knows nothing
+      margin = margin.cwiseMax(tolerances::reported * reach_of(X));
     return holds(*estimate.set, truth) == Answer::no && outside_by_its_size(X, truth, margin);
   }
 
@@ -247,7 +268,9 @@ class EstimationRun final : public PipelineRun {
 
   const ComponentSpec& observer_spec_;
   bool own_model_;
-  Index since_ = 0;             ///< the observer has begun anew
+  Index since_ = 0;  ///< the observer has begun anew
+  Index told_ = -1;  ///< time of the last estimate that was told of
+  std::int64_t samples_ = 0;
   bool was_empty_ = false;      ///< the last estimate
   std::optional<Record> seen_;  ///< the record without what was left out
   bool nominal_ = true;         ///< the plant has had no fault so far, as far as the data tell
@@ -265,6 +288,7 @@ class EstimationRun final : public PipelineRun {
   std::optional<Sample> before_;  ///< the sample before these
   std::optional<RoundingMargin> rounding_;
   std::vector<Certificate> hull_proofs_;
+  const std::vector<Index> nothing_left_out_ = {};
   Phases phases_;
   InnerCheck inner_;
   GrowthWatch growth_;

@@ -201,6 +201,7 @@ struct LeftOut {
 /// What an observer has estimated.
 struct EstimationOutcome {
   std::string observer;
+  Index lag = 0;  ///< of estimates behind the samples: there is none of the last so many times
   std::int64_t consistent = 0, inconsistent = 0,
                undecided = 0;                       ///< answers to "is the estimate non-empty?"
   std::int64_t inconsistent_from = -1;              ///< first k with an estimate proven empty

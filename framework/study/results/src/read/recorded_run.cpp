@@ -111,6 +111,10 @@ std::optional<RecordedEstimation> read_estimation(const Cursor& at, Index n,
     estimation.restart_set = read_form(*restart, n);
   if (const auto follows = assumed->find("follows_its_sets"))
     estimation.follows_its_sets = read_flag(*follows).value_or(false);
+  if (const auto lag = assumed->find("lag"))
+    estimation.lag = read_integer(*lag, 1, max_integer).value_or(0);
+  const auto summary = at.find("summary");
+  estimation.has_outliers = summary && summary->is(Kind::object) && summary->find("outliers");
   estimation.contradictions = contradictions_of(at, estimation.steps);
   return estimation;
 }

@@ -34,9 +34,11 @@ struct RecordedEstimation {
   /// Each set holds all successors of the one before that are consistent with the data. Observers
   /// that know more than their last set, as a bound of their error for all times, may keep to less.
   bool follows_its_sets = false;
+  Index lag = 0;  ///< of steps behind the samples; those of the last so many times are not there
   LineForm initial_set;
   std::optional<LineForm> admissible_set;
   std::optional<LineForm> restart_set = {};  ///< where it begins anew after an empty estimate
+  bool has_outliers = false;  ///< outputs of some samples are left out, as the summary says
   std::vector<RecordedStep> steps = {};
   std::vector<Diagnostic> contradictions = {};  ///< where the summary says what the steps do not
 

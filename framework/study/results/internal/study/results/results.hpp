@@ -42,6 +42,7 @@ struct Assumptions {
   std::optional<LineForm> admissible_set;
   bool follows_its_sets = false;             ///< as the observer says
   std::optional<LineForm> restart_set = {};  ///< where it begins anew after an empty estimate
+  Index lag = 0;                             ///< of estimates behind the samples
 };
 
 class SetsFile;
