@@ -105,6 +105,12 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
           "not re-checked: that the sets from which the modes of {} begin anew hold the state\n",
           p.name);
     }
+    if (p.not_compared > 0) {
+      passed_over += fmt::format(
+          "not re-checked: that the sets of {} of {}, which know later samples, hold every state, "
+          "and claims of \"exact\" (their proofs are checked)\n",
+          count(p.not_compared, "step"), p.name);
+    }
     if (p.exact_claims_unproven > 0) {
       passed_over += fmt::format(
           "not proven: {} claims of \"exact\" of {}, held against directions only, which can "
@@ -165,6 +171,7 @@ std::string report_json(const VerifyOutcome& outcome) {
                                    {"steps", p.steps},
                                    {"by_polytopes", p.by_polytopes},
                                    {"by_supports", p.by_supports},
+                                   {"not_compared", p.not_compared},
                                    {"proofs", p.proofs},
                                    {"exclusions", p.exclusions},
                                    {"states", p.states},

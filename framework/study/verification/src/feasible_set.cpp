@@ -23,6 +23,13 @@ Polytope image(MatrixIn T, VectorIn x) {
 
 Matrix identity(Index n) { return Matrix::Identity(n, n); }
 
+void expect_digits(const Polytope& P) {
+  if (P.bits() <= most_bits) return;
+  throw Error(Errc::unsupported, "the numbers of the exact set have " + std::to_string(P.bits()) +
+                                     " binary digits; at most " + std::to_string(most_bits) +
+                                     " are supported");
+}
+
 }  // namespace
 
 FeasibleSets::FeasibleSets(const Model& model, const LineForm& initial_set,
@@ -81,11 +88,7 @@ Polytope FeasibleSets::step(const Sample& now) {
   for (int draw = 1; model_.is_uncertain() && draw < most_draws && P.is_empty(); ++draw) {
     P = reached(drawn(model_, now.k, draw), now);
   }
-  if (P.bits() > most_bits) {
-    throw Error(Errc::unsupported, "the numbers of the exact set have " + std::to_string(P.bits()) +
-                                       " binary digits; at most " + std::to_string(most_bits) +
-                                       " are supported");
-  }
+  expect_digits(P);
   P_ = std::move(P);
   before_ = now;
   if (!model_.is_descriptor()) return *P_;
@@ -93,6 +96,19 @@ Polytope FeasibleSets::step(const Sample& now) {
   const Polytope target =
       minus_disturbance_.minkowski_sum(image(-model_.B, now.u)).minkowski_sum(range);
   return P_->intersection(model_.A, target);
+}
+
+Polytope FeasibleSets::narrowed(const Polytope& F, const std::deque<Sample>& samples) const {
+  const Index n = model_.states();
+  Polytope later = Polytope::space(n);
+  for (std::size_t j = samples.size() - 1; j > 0; --j) {
+    later = measured(model_, later, samples[j])
+                .minkowski_sum(minus_disturbance_)
+                .minkowski_sum(image(-model_.B, samples[j - 1].u))
+                .preimage(model_.A, zero_vector(n));
+    expect_digits(later);
+  }
+  return F.intersection(later);
 }
 
 LinearModel drawn(const LinearModel& model, Index k, int draw) {

@@ -14,6 +14,8 @@
 #include "fails_again.hpp"
 #include "feasible_sequence.hpp"
 #include "formula_samples.hpp"
+#include "reported_sets.hpp"
+#include "smoothed_sets.hpp"
 #include "step_check.hpp"
 #include "study/checks/design_check.hpp"
 #include "study/checks/rounding_margin.hpp"
@@ -38,7 +40,7 @@ RecordedStep without_claim(RecordedStep step) {
 class Verification {
  public:
   Verification(const std::filesystem::path& directory, const VerifyOptions& options)
-      : run_(read_run(directory)), options_(options), sets_(run_.files) {
+      : run_(read_run(directory)), options_(options), sets_(run_) {
     if (options.second_opinion) cddlib_.emplace(options.stop);
     for (const RecordedPipeline& pipeline : run_.pipelines) names_.push_back(pipeline.name);
     for (const std::string& name : options.pipelines) {
@@ -80,17 +82,22 @@ class Verification {
         const bool serves = feasible && feasible->serves(*estimation) &&
                             feasible->complete(estimation->steps.size());
         if (asked && !serves) feasible.emplace(run_.model, *estimation);
-        check(p, *estimation, asked ? &*feasible : nullptr);
+        FeasibleSequence* const exact = asked ? &*feasible : nullptr;
+        estimation->lag > 0 ? check_lagging(p, *estimation, exact) : check(p, *estimation, exact);
       }
       if (outcome_.violation || outcome_.interrupted) return;
     }
-    if (const auto extra = sets_.next())
-      refuse(extra->line, "has more lines than results.json has steps");
+    sets_.expect_end();
   }
 
   bool is_asked_for(const std::string& name) const {
     const std::vector<std::string>& asked = options_.pipelines;
     return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end();
+  }
+
+  bool is_stopped() {
+    outcome_.interrupted = options_.stop && options_.stop->load();
+    return outcome_.interrupted;
   }
 
   bool is_late() {
@@ -105,13 +112,6 @@ class Verification {
       found.first_undecided = fmt::format("k = {}: the time limit came before its check", k);
   }
 
-  [[noreturn]] void refuse(std::int64_t line, const std::string& reason) const {
-    throw InputError(
-        (run_.files.directory() / "sets.jsonl").string(),
-        {{"", reason, "the file is not as \"cordon run\" wrote it; run the study again",
-          static_cast<int>(line)}});
-  }
-
   [[noreturn]] void refuse_left_out(std::size_t p, std::size_t i) const {
     throw InputError((run_.files.directory() / "results.json").string(),
                      {{fmt::format("/pipelines/{}/steps/{}/left_out", p, i),
@@ -120,29 +120,8 @@ class Verification {
   }
 
   [[noreturn]] void refuse_missing(Index k, const RecordedPipeline& pipeline) const {
-    refuse(0, fmt::format("has no step k = {} of pipeline \"{}\", which data.csv has", k,
-                          pipeline.name));
-  }
-
-  RecordedSet set_of(const RecordedPipeline& pipeline, const RecordedStep& step) {
-    std::optional<RecordedSet> row = sets_.next();
-    if (!row) refuse(0, fmt::format("ends before pipeline \"{}\", k = {}", pipeline.name, step.k));
-    if (row->pipeline != pipeline.name || row->k != step.k ||
-        row->set.dim() != run_.model.states()) {
-      refuse(row->line, fmt::format("does not hold the set of pipeline \"{}\", k = {}",
-                                    pipeline.name, step.k));
-    }
-    return std::move(*row);
-  }
-
-  /// Both files tell what is claimed of the set. What results.json says was checked.
-  void expect_same_claims(const RecordedStep& step, const RecordedSet& row) const {
-    if (row.tightness != step.tightness)
-      refuse(row.line, fmt::format("says tightness \"{}\", results.json \"{}\"",
-                                   to_string(row.tightness), to_string(step.tightness)));
-    if (row.consistent != step.consistent)
-      refuse(row.line, fmt::format("says consistent \"{}\", results.json \"{}\"",
-                                   to_string(row.consistent), to_string(step.consistent)));
+    sets_.refuse(0, fmt::format("has no step k = {} of pipeline \"{}\", which data.csv has", k,
+                                pipeline.name));
   }
 
   /// What the run itself has found: an assumption that fails, claims of a designer that are false.
@@ -175,10 +154,7 @@ class Verification {
         compare_recorded(run_.bank, *recorded.design,
                          {recorded.claimed_separation, recorded.proven_separation, recorded.proven},
                          verify_design(run_.bank, *recorded.design, options_.stop, true));
-    if (options_.stop && options_.stop->load()) {
-      outcome_.interrupted = true;
-      return;
-    }
+    if (is_stopped()) return;
     found.proofs = claims.hold;
     if (found.undecided == 0) found.first_undecided = std::move(claims.first_undecided);
     found.undecided += claims.undecided;
@@ -195,9 +171,8 @@ class Verification {
     if (found.rests_on_more) return;
     const auto total = std::ssize(diagnosis.steps);
     outcome_.violation = check_diagnosis(run_, p, options_, found, [&](std::int64_t done) {
-      outcome_.interrupted = options_.stop && options_.stop->load();
       if (options_.progress) options_.progress(names_, p, done, total);
-      return !outcome_.interrupted;
+      return !is_stopped();
     });
   }
 
@@ -205,13 +180,45 @@ class Verification {
   Sample sample_of(std::size_t p, std::size_t i, std::optional<Record> record) const {
     const RecordedPipeline& pipeline = run_.pipelines[p];
     const RecordedStep& step = pipeline.estimation()->steps[i];
-    if (!record) refuse(0, fmt::format("tells of k = {}, which data.csv does not have", step.k));
+    if (!record)
+      sets_.refuse(0, fmt::format("tells of k = {}, which data.csv does not have", step.k));
     Sample& sample = record->sample;
     if (sample.k < step.k) refuse_missing(sample.k, pipeline);
     if (sample.k > step.k) return std::move(sample);
     const auto is_there = [&](Index output) { return !std::isnan(sample.y[output]); };
     if (!std::all_of(step.left_out.begin(), step.left_out.end(), is_there)) refuse_left_out(p, i);
     return missing_outputs(std::move(sample), step.left_out);
+  }
+
+  /// Of sets that later samples have narrowed.
+  void check_lagging(std::size_t p, const RecordedEstimation& estimation,
+                     FeasibleSequence* feasible) {
+    VerifiedPipeline& found = outcome_.pipelines.back();
+    SmoothedSets smoothed(run_, estimation, feasible);
+    for (std::size_t i = 0; i < estimation.steps.size(); ++i) {
+      if (is_stopped()) return;
+      const RecordedStep& step = estimation.steps[i];
+      const RecordedSet row = sets_.of(run_.pipelines[p], step);
+      StepCheck check(step, row, found.rounding, margin_of_later(row.set, found.rounding));
+      const bool is_wanted = feasible && static_cast<std::int64_t>(i) % options_.every == 0,
+                 is_open = is_wanted && is_late();
+      const auto F = is_open ? std::nullopt : smoothed.at(step.k, is_wanted);
+      if (is_open) leave_open(step.k);
+      if (is_wanted && !is_open) {
+        check.proofs();
+        compare(check, step, F, found);
+        tell(p, i, row, check);
+      }
+      if (outcome_.violation) return;
+      sets_.expect_same_claims(step, row);
+    }
+    refuse_contradictions(estimation);
+  }
+
+  void refuse_contradictions(const RecordedEstimation& estimation) const {
+    if (!estimation.contradictions.empty())
+      throw InputError((run_.files.directory() / "results.json").string(),
+                       estimation.contradictions);
   }
 
   /// `feasible`: null where the pipeline is not asked for, of which only the files are read.
@@ -230,10 +237,7 @@ class Verification {
     std::size_t read = 0;
     Clock::time_point told = Clock::now();
     for (std::size_t i = 0; i < estimation.steps.size(); ++i) {
-      if (options_.stop && options_.stop->load()) {
-        outcome_.interrupted = true;
-        return;
-      }
+      if (is_stopped()) return;
       const RecordedStep& step = estimation.steps[i];
       if (cddlib_) cddlib_->asked_by(pipeline.name, step.k);
       std::optional<Polytope> F;
@@ -244,7 +248,7 @@ class Verification {
         if (feasible) follow_formulas(estimation, i, *sample);
       }
       row_before = std::move(row);
-      row = set_of(pipeline, step);
+      row = sets_.of(pipeline, step);
       const bool anew = estimation.begins_anew(i);
       if (anew) rounding.emplace(run_.model, *estimation.restart_set, pipeline.rounding);
       const bool follows =
@@ -260,7 +264,7 @@ class Verification {
       if (is_checked)
         check_step(p, i, *row, {margin, outputs}, F, follows ? &*row_before : nullptr, transition);
       if (outcome_.violation) return;
-      expect_same_claims(step, *row);
+      sets_.expect_same_claims(step, *row);
       if (!is_checked) continue;
       if (options_.progress && Clock::now() - told > std::chrono::milliseconds(50)) {
         options_.progress(names_, p, static_cast<std::int64_t>(i),
@@ -270,9 +274,7 @@ class Verification {
     }
     const std::optional<Record> behind = pipeline.stopped ? std::nullopt : data->next();
     if (behind) refuse_missing(behind->sample.k, pipeline);
-    if (!estimation.contradictions.empty())
-      throw InputError((run_.files.directory() / "results.json").string(),
-                       estimation.contradictions);
+    refuse_contradictions(estimation);
     const auto total = static_cast<std::int64_t>(estimation.steps.size());
     if (options_.progress) options_.progress(names_, p, total, total);
   }
@@ -350,6 +352,12 @@ class Verification {
         ++found.by_supports;
       }
     }
+    tell(p, i, row, check);
+  }
+
+  /// What was found of step i.
+  void tell(std::size_t p, std::size_t i, const RecordedSet& row, const StepCheck& check) {
+    VerifiedPipeline& found = outcome_.pipelines.back();
     ++found.steps;
     found.proofs += check.proofs_that_hold();
     found.exact_claims += check.exact_claim_holds() ? 1 : 0;
@@ -358,7 +366,7 @@ class Verification {
       found.first_undecided = fmt::format("k = {}: {}", row.k, check.first_undecided());
     found.undecided += check.undecided();
     if (const auto& violation = check.violation()) {
-      outcome_.violation = {pipeline.name, row.k, violation->what,
+      outcome_.violation = {found.name, row.k, violation->what,
                             violation->in_sets_file
                                 ? fmt::format("sets.jsonl:{}", row.line)
                                 : fmt::format("/pipelines/{}/steps/{}/hull", p, i)};
@@ -367,7 +375,7 @@ class Verification {
 
   RecordedRun run_;
   const VerifyOptions& options_;
-  SetReader sets_;
+  ReportedSets sets_;
   std::vector<std::string> names_;
   std::optional<FormulaSamples> samples_;     ///< of a model by formulas
   std::optional<ModeTrajectories> formulas_;  ///< the same, of the pipeline

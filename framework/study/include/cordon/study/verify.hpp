@@ -53,10 +53,13 @@ struct VerifiedPipeline {
   std::int64_t steps = 0;         ///< checked
   std::int64_t by_polytopes = 0;  ///< of them against the exact feasible set
   std::int64_t by_supports =
-      0;                        ///< of them against the successors of the set before, in directions
-  std::int64_t proofs = 0;      ///< proofs of (non-)emptiness and of bounds that hold
-  std::int64_t exclusions = 0;  ///< of modes, proven again
-  std::int64_t states = 0;      ///< boxes that a diagnosis tells of the state, proven again
+      0;  ///< of them against the successors of the set before, in directions
+  /// Of them, estimates that lag behind their samples and of which the proofs alone are checked;
+  /// neither that they hold every state nor that they are exact.
+  std::int64_t not_compared = 0;
+  std::int64_t proofs = 0;        ///< proofs of (non-)emptiness and of bounds that hold
+  std::int64_t exclusions = 0;    ///< of modes, proven again
+  std::int64_t states = 0;        ///< boxes that a diagnosis tells of the state, proven again
   std::int64_t exact_claims = 0;  ///< claims of `exact` that are true
   /// Those that directions do not refute, or that there is nothing to compare with: no state is
   /// consistent with model and data, perhaps since data are rounded.

@@ -2,6 +2,7 @@
 // The states that model, bounds and data allow: what every reported set must contain.
 #pragma once
 
+#include <deque>
 #include <optional>
 
 #include "cordon/interfaces/descriptor_matrix.hpp"
@@ -30,6 +31,12 @@ class FeasibleSets {
 
   /// F_k for the next sample.
   Polytope step(const Sample& now);
+
+  /// The states of F = F_k that later samples leave, too: of `samples`, the first is that of k. L_m
+  /// is everything for the last of them, m, and
+  ///   L_j = {x : A x + B u_j ∈ (L_{j+1} ∩ Y_{j+1}) ⊕ (-Bw W)},   F ∩ L_k.
+  /// Of models without E whose matrices are exact.
+  Polytope narrowed(const Polytope& F, const std::deque<Sample>& samples) const;
 
  private:
   Polytope reached(const LinearModel& m, const Sample& now) const;
