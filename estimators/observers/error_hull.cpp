@@ -14,9 +14,9 @@
 #include "gains/gain_certificate.hpp"
 #include "gains/rounded_products.hpp"
 #include "observer_parameters.hpp"
+#include "observers/at_rest.hpp"
 #include "observers/error_widths.hpp"
 #include "observers/observer_gain.hpp"
-#include "observers/prediction.hpp"
 #include "observers/present_outputs.hpp"
 
 namespace cordon::estimators {

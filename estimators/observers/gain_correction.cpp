@@ -11,9 +11,10 @@
 #include "cordon/core/tolerances.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "observer_parameters.hpp"
+#include "observers/at_rest.hpp"
+#include "observers/corrected_recursion.hpp"
 #include "observers/gained_recursion.hpp"
 #include "observers/interval_spread.hpp"
-#include "observers/prediction.hpp"
 
 namespace cordon::estimators {
 
@@ -41,8 +42,8 @@ class GainCorrection final : public Observer {
       : Observer(context.model, context.backend),
         budget_(budget_from(params)),
         X0_(initial_set_from(model(), params)),
-        effectiveness_(model(), backend()),
-        prediction_(model(), backend(), effectiveness_),
+        recursion_(model(), backend()),
+        step_(model().linear, 1, 1),
         first_(at_rest(model()), gain, context.backend, budget_),
         correction_(at_rest(model()), gain, context.backend, budget_, held_by_predictions(model())),
         noise_(linalg::product(model().linear.Dv, invariant::enclosing_zonotope(model().V).G)
@@ -63,7 +64,7 @@ class GainCorrection final : public Observer {
   }
   Enclosure do_step(const Sample& before, const Sample& now) override {
     const Enclosure predicted =
-        timed(Phase::predict, [&] { return prediction_.next(X_, before.u); });
+        timed(Phase::predict, [&] { return recursion_.predicted(X_, step_, before.u); });
     return X_ = corrected(correction_, predicted, now);
   }
   void do_replace(const Enclosure& X) override { X_ = X; }
@@ -100,8 +101,8 @@ class GainCorrection final : public Observer {
   Budget budget_;
   LineForm X0_;
   Enclosure X_;
-  Effectiveness effectiveness_;
-  Prediction prediction_;
+  CorrectedRecursion recursion_;  ///< of which the prediction is used
+  StackStep step_;
   GainedRecursion first_, correction_;
   Vector noise_;  ///< half widths of Dv V
 };

@@ -39,7 +39,8 @@ TEST_CASE("Boxes that differ by the last place") {
       CAPTURE(backend->info().name);
       CAPTURE(rounding);
       const auto box = [&](double lower, double upper) {  // without rounding
-        return backend->convex_hull(backend->point(Vector{{lower}}), backend->point(Vector{{upper}}));
+        return backend->convex_hull(backend->point(Vector{{lower}}),
+                                    backend->point(Vector{{upper}}));
       };
       const double above = 1 + 0x1p-52, below = std::nextafter(.1, 0);
       // representations whose hull is the box itself hold it without rounding

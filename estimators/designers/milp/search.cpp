@@ -21,7 +21,7 @@ constexpr double share_of_starts = .1, share_of_single_pairs = .2,
                  share_of_first_start = .5;  ///< of the time limit, ends of these parts
 constexpr double kappa_tolerance = 1e-6;     ///< of κ, for the solvers
 constexpr double zero = 1e-9;                ///< multipliers below are 0
-constexpr double closed_tangents =
+constexpr double closed_programs =
     1e-9;  ///< a quadratic cost is met where tangents miss it by this share
 
 class MilpSearch {
@@ -255,7 +255,7 @@ void MilpSearch::branch(InputProgram whole, const std::vector<double>& most) {
     offer(u);
     if (solution.status != MipStatus::optimal) return;
     closed_ = problem_.cost.at(u) - solution.objective <=
-              std::max(limits_.gap, closed_tangents) * problem_.cost.at(u);
+              std::max(limits_.gap, closed_programs) * problem_.cost.at(u);
     if (closed_) return;
     whole.add_tangents(u);
   }
