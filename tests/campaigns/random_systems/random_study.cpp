@@ -244,8 +244,7 @@ class StudyMaker {
       list.push_back(
           {{"type", type}, {"gain", {{"type", "kalman"}}}, {"max_generators", generators}});
     }
-    for (const char* type : {"interval_trajectory", "error_hull"})
-      list.push_back({{"type", type}, {"gain", {{"type", "kalman"}}}});
+    list.push_back({{"type", "interval_trajectory"}, {"gain", {{"type", "kalman"}}}});
     return list;
   }
 
