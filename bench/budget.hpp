@@ -44,6 +44,7 @@ inline constexpr Budget budgets[] = {
     {"generalised_intersection/3/30/5", 1},
     {"generalised_intersection/10/100/20", 10},
     {"generalised_intersection/20/200/50", 60},
+    {"fixed_lag/three_states/40/10/5", 300},
     {"plugins_loaded_and_study_validated", 20000},
 };
 

@@ -21,11 +21,13 @@ Outcome program(const std::string& arguments) { return test::cordon_with(argumen
 Json study_of(const std::string& data, Json pipelines) {
   Json study{{"cordon", 1}, {"title", "late"}};
   study["system"] = Json::parse(R"({"type": "lti", "A": [[0.9, 0.2], [-0.2, 0.8]],
-    "Bw": [[0.05], [0.1]], "C": [[1, 0]], "Dv": [[0.05]],
+    "B": [[0.1], [0.3]], "Bw": [[0.05], [0.1]], "C": [[1, 0]], "Dv": [[0.05]],
     "X0": {"type": "box", "lower": [-1, -1], "upper": [1, 1]},
     "W": {"type": "box", "lower": [-1], "upper": [1]},
     "V": {"type": "box", "lower": [-1], "upper": [1]}})");
   study["data"]["simulate"] = Json::parse(data);
+  study["data"]["simulate"]["input"] =
+      Json::parse(R"([{"type": "sine", "amplitude": 1, "omega": 0.7}])");
   study["pipelines"] = std::move(pipelines);
   study["metrics"] = {"contains_truth"};
   return study;
