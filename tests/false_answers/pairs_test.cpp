@@ -37,7 +37,7 @@ TEST_CASE("Boxes that differ by the last place") {
   for (const char* rounding : {"nominal", "outward"}) {
     for (const auto& backend : backends(rounding)) {
       CAPTURE(backend->info().name);
-      CAPTURE(rounding);
+      CAPTURE(std::string(rounding));
       const auto box = [&](double lower, double upper) {  // without rounding
         return backend->convex_hull(backend->point(Vector{{lower}}),
                                     backend->point(Vector{{upper}}));
