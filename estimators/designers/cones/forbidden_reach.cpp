@@ -13,7 +13,7 @@ namespace cordon::designers {
 namespace {
 
 constexpr double most_times = 1e3;                          ///< that a direction is followed
-constexpr double ended = 1 - 1e-9;                          ///< of it: Q does not end there
+constexpr double end_of_ray = 1 - 1e-9;                     ///< of it: Q does not end there
 constexpr double widest_room = .5, narrowest_room = 1e-10;  ///< of the terms
 
 }  // namespace
@@ -49,7 +49,7 @@ ForbiddenReach::Answer ForbiddenReach::along(const Vector& v) const {
   if (!farthest.solved || !farthest.xi) return answer;
   const Vector& xi = *farthest.xi;
   const double most = .5 * most_times * (1 + std::clamp(xi[g], -1.0, 1.0));
-  if (xi[g] < ended && farthest.y.allFinite()) {
+  if (xi[g] < end_of_ray && farthest.y.allFinite()) {
     const SeparatingFacet facet = facet_of(rows_, -farthest.y);
     if (!facet.a.isZero(0)) answer.facet = facet;
   }
