@@ -181,14 +181,14 @@ TEST_CASE("a bank of gains takes a region that the plant is shown never to leave
 
 TEST_CASE("designed inputs keep to the region") {
   const auto design = [](double reach) {
-    Json design = study();
-    design["system"]["region"]["states"] = {{"lower", {-reach}}, {"upper", {reach}}};
-    design["system"]["modes"] = Json::parse(R"([{"name": "half", "actuator": [0.5]}])");
-    design.erase("data");
-    design["pipelines"] = Json::parse(R"([{"backend": "constrained_zonotope",
+    Json wide = study();
+    wide["system"]["region"]["states"] = {{"lower", {-reach}}, {"upper", {reach}}};
+    wide["system"]["modes"] = Json::parse(R"([{"name": "half", "actuator": [0.5]}])");
+    wide.erase("data");
+    wide["pipelines"] = Json::parse(R"([{"backend": "constrained_zonotope",
         "designer": {"type": "facets", "horizon": 3,
                      "input_set": {"type": "box", "lower": [-2.5], "upper": [2.5]}}}])");
-    return Run(design);
+    return Run(wide);
   };
   const Run inside(design(4));
   CAPTURE(inside.outcome.out);
