@@ -6,26 +6,11 @@
 #include <benchmark/benchmark.h>
 
 #include "registry.hpp"
+#include "three_states.hpp"
 
 namespace {
 
 using namespace cordon;
-
-Model watched_plant() {
-  const auto cube = [](Index n) { return make_box({-Vector::Ones(n), Vector::Ones(n)}); };
-  Model model;
-  LinearModel& m = model.linear;
-  m.A = Matrix{{.9, .2, 0}, {-.2, .9, .1}, {0, -.1, .95}};
-  m.B = Matrix{{0}, {.1}, {.2}};
-  m.Bw = Matrix{{.02, 0}, {.03, .01}, {0, .05}};
-  m.C = Matrix{{1, 0, 0}, {0, .5, 1}};
-  m.D = Matrix::Zero(2, 1);
-  m.Dv = Matrix{{.1, .05}, {0, .08}};
-  model.X0 = cube(3);
-  model.W = model.V = cube(2);
-  model.U = make_space(1);
-  return model;
-}
 
 /// Of the plant with disturbances and noise of half their bounds.
 std::vector<Sample> samples_of(const Model& model, Index steps) {
@@ -43,7 +28,7 @@ std::vector<Sample> samples_of(const Model& model, Index steps) {
 }
 
 void step(benchmark::State& state, const std::string& name, Params params) {
-  const Model model = watched_plant();
+  const Model model = three_states();
   const std::vector<Sample> samples = samples_of(model, 100);
   params.set("max_generators", std::int64_t{40}).set("max_constraints", std::int64_t{10});
   const auto observer = registry().make<ObserverEntry>(

@@ -6,33 +6,18 @@
 #include <benchmark/benchmark.h>
 
 #include "registry.hpp"
+#include "three_states.hpp"
 
 namespace {
 
 using namespace cordon;
-
-Model gain_plant() {
-  Model model;
-  LinearModel& m = model.linear;
-  m.A = Matrix{{.9, .2, 0}, {-.2, .9, .1}, {0, -.1, .95}};
-  m.B = Matrix{{0}, {.1}, {.2}};
-  m.Bw = Matrix{{.02, 0}, {.03, .01}, {0, .05}};
-  m.C = Matrix{{1, 0, 0}, {0, .5, 1}};
-  m.D = Matrix::Zero(2, 1);
-  m.Dv = Matrix{{.1, .05}, {0, .08}};
-  const auto cube = [](Index n) { return make_zonotope(Vector::Zero(n), Matrix::Identity(n, n)); };
-  model.X0 = cube(3);
-  model.W = model.V = cube(2);
-  model.U = make_space(1);
-  return model;
-}
 
 void gain_step(benchmark::State& state, const std::string& name, const std::string& backend,
                const Params& params) {
   Params sets;
   if (backend != "interval") sets.set("reduction", std::string("girard"));
   const auto observer = registry().make<ObserverEntry>(
-      name, {gain_plant(), registry().make<BackendEntry>(backend, sets)}, params);
+      name, {three_states(), registry().make<BackendEntry>(backend, sets)}, params);
   Sample now{0, Vector::Constant(1, .01), Vector::Constant(2, .02)};
   for (auto _ : state) {
     benchmark::DoNotOptimize(observer->step(now));

@@ -303,6 +303,7 @@ Exit searched(const Study& study, const std::vector<Sample>& samples,
 }
 
 Exit identify(const Program& program, const IdentifyArguments& arguments) {
+  check(arguments);
   Registry registry;
   registry.load({program.plugins});
   const Study study =

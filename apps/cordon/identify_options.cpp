@@ -38,6 +38,12 @@ double share_from(const std::string& text, const char* option) {
   return percent / 100;
 }
 
+void check(const IdentifyArguments& arguments) {
+  scale_from(arguments.scale);
+  share_from(arguments.train, "--train");
+  margin_of(arguments);
+}
+
 double margin_of(const IdentifyArguments& arguments) {
   return arguments.margin.empty() ? 0 : share_from(arguments.margin, "--margin");
 }

@@ -16,6 +16,9 @@ struct IdentifyArguments {
   bool trade_off = false, json = false;
 };
 
+/// Throws before any work what the functions below would.
+void check(const IdentifyArguments& arguments);
+
 Scaled scale_from(const std::string& name);
 
 /// "70%": 0.7. A number alone could be either.

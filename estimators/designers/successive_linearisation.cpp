@@ -87,7 +87,6 @@ class Successive {
     } catch (const Error& error) {
       if (error.code() != Errc::not_enclosed) throw;
       found_.reason = error.what();
-      found_.suggestion = "smaller sets, or another \"reference\", about which the search begins";
       return std::nullopt;
     }
   }

@@ -88,8 +88,14 @@ LinearBank::LinearBank(const ModeBank& modes, const Matrix& u) : bank(modes) {
       models.push_back(model_under(mode.model, u));
     } catch (const Error& error) {
       if (error.code() != Errc::not_enclosed) throw;
-      throw Error(Errc::not_enclosed, fmt::format("mode \"{}\" is not enclosed under the input: {}",
-                                                  mode.name, error.what()));
+      const char* way_out =
+          mode.model.is_linear()
+              ? ""
+              : "; give the system an \"admissible\" set in which formulas are defined, or smaller "
+                "sets";
+      throw Error(Errc::not_enclosed,
+                  fmt::format("mode \"{}\" is not enclosed under the input, {}{}", mode.name,
+                              error.what(), way_out));
     }
   }
 }

@@ -211,6 +211,8 @@ TEST_CASE("bounds that are sought with estimates are written, with a margin") {
   const test::Outcome wrong = run("identify s.json --margin 0.5 --write n.json");
   CHECK(wrong.code == 2);
   CHECK(wrong.out.find("--margin takes a share") != std::string::npos);
+  CHECK(wrong.out.find("Factor") == std::string::npos);  // before any work
+  CHECK(run("identify s.json --margin x").code == 2);    // although nothing is written
   Json varying = formulas;
   varying["system"]["parameters"]["a"] = {{"lower", 0.04}, {"upper", 0.06}, {"varying", true}};
   varying["system"]["f"] = {"x + 0.5*u - a*x*abs(x) + w"};

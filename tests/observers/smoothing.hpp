@@ -34,21 +34,6 @@ inline std::shared_ptr<Observer> observer(const std::string& name, const Model& 
   return made;
 }
 
-inline Model three_states() {
-  Model model;
-  LinearModel& m = model.linear;
-  m.A = Matrix{{.9, .2, 0}, {-.2, .9, .1}, {0, -.1, .95}};
-  m.B = Matrix{{0}, {.1}, {.2}};
-  m.Bw = Matrix{{.02, 0}, {.03, .01}, {0, .05}};
-  m.C = Matrix{{1, 0, 0}, {0, .5, 1}};
-  m.D = Matrix::Zero(2, 1);
-  m.Dv = Matrix{{.1, .05}, {0, .08}};
-  model.X0 = make_box(cube(3, 1));
-  model.W = make_box(cube(2, 1));
-  model.V = make_box(cube(2, 1));
-  return model;
-}
-
 inline std::vector<Sample> samples_of_three_states() {
   std::vector<Sample> all;
   for (std::size_t k = 0; k < input.size(); ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two plants of the literature [Alamo2005, sec. 7.1; a vehicle's lateral motion] with their data,
-// on which observers were compared with the CORA toolbox.
+// on which observers were compared with the CORA toolbox, and a third one.
 #pragma once
 
 #include "published/csv.hpp"
@@ -36,6 +36,22 @@ inline Model vehicle() {
       Matrix{{0.9922748449450575, -0.0080030620640856}, {0.2889726943723335, 0.9299044703341978}},
       Matrix{{0.0222329772960317}, {0.2473223577905438}}, Matrix{{0, 15}}, 1,
       Matrix{{.005, 0}, {0, .055}}, .1);
+}
+
+/// Two outputs with noises in common; of this project.
+inline Model three_states() {
+  Model model;
+  LinearModel& m = model.linear;
+  m.A = Matrix{{.9, .2, 0}, {-.2, .9, .1}, {0, -.1, .95}};
+  m.B = Matrix{{0}, {.1}, {.2}};
+  m.Bw = Matrix{{.02, 0}, {.03, .01}, {0, .05}};
+  m.C = Matrix{{1, 0, 0}, {0, .5, 1}};
+  m.D = Matrix::Zero(2, 1);
+  m.Dv = Matrix{{.1, .05}, {0, .08}};
+  model.X0 = make_box(cube(3, 1));
+  model.W = make_box(cube(2, 1));
+  model.V = make_box(cube(2, 1));
+  return model;
 }
 
 inline std::vector<Sample> samples(const std::string& name, Index inputs) {

@@ -30,21 +30,6 @@ inline Matrix matrix(const json& rows) {
   return M;
 }
 
-inline Model three_states() {
-  Model model;
-  LinearModel& m = model.linear;
-  m.A = Matrix{{.9, .2, 0}, {-.2, .9, .1}, {0, -.1, .95}};
-  m.B = Matrix{{0}, {.1}, {.2}};
-  m.Bw = Matrix{{.02, 0}, {.03, .01}, {0, .05}};
-  m.C = Matrix{{1, 0, 0}, {0, .5, 1}};
-  m.D = Matrix::Zero(2, 1);
-  m.Dv = Matrix{{.1, .05}, {0, .08}};
-  model.X0 = make_box(cube(3, 1));
-  model.W = make_box(cube(2, 1));
-  model.V = make_box(cube(2, 1));
-  return model;
-}
-
 inline std::vector<Sample> samples_of(const json& plant) {
   const Matrix y = matrix(plant["y"]), u = matrix(plant["u"]);
   std::vector<Sample> all;
@@ -56,12 +41,12 @@ inline const std::vector<Example>& plants() {
   static const std::vector<Example> all = [] {
     std::ifstream file(CORDON_SOURCE_DIR "/tests/published/data/gain_observers.json");
     const json read = json::parse(file);
-    return std::vector<Example>{
-        {"two_states", comparison::two_states(), comparison::samples("observer_2dim", 2),
-         read["two_states"]},
-        {"vehicle", comparison::vehicle(), comparison::samples("observer_vehicle", 1),
-         read["vehicle"]},
-        {"three_states", three_states(), samples_of(read["three_states"]), read["three_states"]}};
+    return std::vector<Example>{{"two_states", comparison::two_states(),
+                                 comparison::samples("observer_2dim", 2), read["two_states"]},
+                                {"vehicle", comparison::vehicle(),
+                                 comparison::samples("observer_vehicle", 1), read["vehicle"]},
+                                {"three_states", comparison::three_states(),
+                                 samples_of(read["three_states"]), read["three_states"]}};
   }();
   return all;
 }

@@ -82,8 +82,10 @@ Answer Set::is_subset_of(const Set& other, Certificate* why) const {
   if (answer == Answer::yes && !other.exact_exchange() && is_empty() != Answer::yes)
     return Answer::unknown;
   if (answer == Answer::yes && is_box_form(right) &&
-      !is_within(interval_hull(), other.interval_hull()))
+      !is_within(interval_hull(), other.interval_hull())) {
+    if (why) *why = {};
     return Answer::unknown;
+  }
   if (answer == Answer::no && !exact_exchange()) return Answer::unknown;
   return answer;
 }

@@ -17,7 +17,8 @@ namespace cordon {
 namespace {
 
 /// Errors of one time are bounded less closely than those of a region, which stand for all times.
-constexpr LinearisationEffort quick{12, 4, 100'000, 64, formulas::AffineForm::first_order};
+constexpr LinearisationEffort quick{
+    12, 4, 100'000, 64, formulas::AffineForm::first_order, "where the states may be"};
 
 Box meet(const Box& X, const Box& Y) {
   return {X.lower.cwiseMax(Y.lower), X.upper.cwiseMin(Y.upper)};

@@ -56,13 +56,14 @@ Deviation bounded(BoxEnclosure& enclosure, const Vector& weights, const Matrix& 
   Deviation found = bound_deviation(enclosure, weights, slopes, box, parts);
   if (found.bounds.is_finite()) return found;
   enclosure.set_box(box);
+  const std::string without_bounds = std::string(name) + " has no bounds " + effort.where;
   for (Index row = 0; row < weights.size(); ++row) {
     const std::string why = weights[row] != 0 ? enclosure.why_not_enclosed(row) : "";
     if (why.empty()) continue;
-    throw Error(Errc::not_enclosed, std::string(name) + " has no bounds on the region, row " +
-                                        std::to_string(row + 1) + ": " + why);
+    throw Error(Errc::not_enclosed,
+                without_bounds + ", row " + std::to_string(row + 1) + ": " + why);
   }
-  throw Error(Errc::not_enclosed, std::string(name) + " has no bounds on the region");
+  throw Error(Errc::not_enclosed, without_bounds);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ struct LinearisationEffort {
   std::size_t most_steps = 3'000'000;  ///< of all parts together, where there are more
   Index points = 1000;                 ///< by which coordinates of the errors are chosen
   formulas::AffineForm form = formulas::AffineForm::convex_differences;
+  const char* where = "on the region";  ///< the box, for errors
 };
 
 /// Slopes that are given by states and inputs.
