@@ -17,6 +17,13 @@
 //     std::optional<Result> reduce(const Value&, Budget);
 //   };
 //
+// Where it has them as well, they are asked in place of the defaults of Set and SetBackend:
+//
+//     bool has_exact_form(const Value&);  View view(const Value&);  Vector maximizer(const Value&,
+//     VectorIn d);  Answer is_subset(const Value&, const Value&, Certificate*),
+//     is_disjoint(const Value&, const Value&, Certificate*);  Result import_view(const View&),
+//     product(const Value&, const Value&);
+//
 // All are const member functions; preconditions are those of Set and SetBackend (shapes fit,
 // numbers are finite).
 #pragma once
@@ -76,6 +83,42 @@ class ValueSet final : public Set {
     return representation_.interval_hull(value_, why);
   }
   std::optional<Volume> do_volume() const override { return representation_.volume(value_); }
+  bool do_has_exact_form() const override {
+    if constexpr (requires { representation_.has_exact_form(value_); }) {
+      return representation_.has_exact_form(value_);
+    } else {
+      return Set::do_has_exact_form();
+    }
+  }
+  View do_view() const override {
+    if constexpr (requires { representation_.view(value_); }) {
+      return representation_.view(value_);
+    } else {
+      return Set::do_view();
+    }
+  }
+  Vector do_maximizer(VectorIn d) const override {
+    if constexpr (requires { representation_.maximizer(value_, d); }) {
+      return representation_.maximizer(value_, d);
+    } else {
+      return Set::do_maximizer(d);
+    }
+  }
+  // Both sets are of the same backend.
+  Answer do_is_subset_of(const Set& other, Certificate* why) const override {
+    if constexpr (requires { representation_.is_subset(value_, value_, why); }) {
+      return representation_.is_subset(value_, static_cast<const ValueSet&>(other).value(), why);
+    } else {
+      return Answer::unknown;
+    }
+  }
+  Answer do_is_disjoint_from(const Set& other, Certificate* why) const override {
+    if constexpr (requires { representation_.is_disjoint(value_, value_, why); }) {
+      return representation_.is_disjoint(value_, static_cast<const ValueSet&>(other).value(), why);
+    } else {
+      return Answer::unknown;
+    }
+  }
 
   const Representation& representation_;  // lives in the backend, which the set keeps alive
   Value value_;
@@ -100,6 +143,20 @@ class ValueBackend final : public SetBackend {
   }
 
   Made do_import(const LineForm& X) const override { return make(representation_.import(X)); }
+  Made do_import_view(const View& X) const override {
+    if constexpr (requires { representation_.import_view(X); }) {
+      return make(representation_.import_view(X));
+    } else {
+      return SetBackend::do_import_view(X);
+    }
+  }
+  Made do_product(const Set& X, const Set& Y) const override {
+    if constexpr (requires { representation_.product(value(X), value(Y)); }) {
+      return make(representation_.product(value(X), value(Y)));
+    } else {
+      return {};
+    }
+  }
 
   Made do_predict(const Set& X, const PredictionArgs& p) const override {
     Few<Operand<Value>> operands;

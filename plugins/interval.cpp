@@ -79,6 +79,8 @@ struct Intervals {
 
   Index dim(const Box& X) const { return X.dim(); }
   LineForm line_form(const Box& X) const { return make_box(X); }
+  /// With outward rounding a form whose centre or radius is rounded is another set.
+  bool has_exact_form(const Box& X) const { return !outward || is_exact_form_of(X); }
   Complexity complexity(const Box& X) const {
     Complexity c;
     for (Index i = 0; i < X.dim(); ++i) {
@@ -118,6 +120,14 @@ struct Intervals {
       if (std::isinf(terms[i])) return infinity;
     }
     return rounding::sum(terms).upper;
+  }
+  Vector maximizer(const Box& X, VectorIn d) const {
+    Vector corner(X.dim());
+    for (Index i = 0; i < X.dim(); ++i) {
+      const double lower = std::isinf(X.lower[i]) ? 0 : X.lower[i];
+      corner[i] = d[i] > 0 ? X.upper[i] : d[i] < 0 ? X.lower[i] : lower;
+    }
+    return corner;
   }
   Box interval_hull(const Box& X, std::vector<Certificate>* why) const {
     if (why)

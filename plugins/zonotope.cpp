@@ -5,6 +5,7 @@
 
 #include "adapter.hpp"
 #include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
 #include "cordon/registry/plugin.hpp"
 #include "cordon/sets/constraint_elimination.hpp"
@@ -61,6 +62,11 @@ struct Zonotopes {
   Answer is_bounded(const Value&) const { return Answer::yes; }
   double support(const Value& X, VectorIn d, Certificate*) const {
     return X.Z ? sets::support(*X.Z, d) : -infinity;
+  }
+  Vector maximizer(const Value& X, VectorIn d) const {
+    if (!X.Z) return Vector(0);
+    const Vector along = linalg::transposed_product(X.Z->G, d);
+    return X.Z->c + linalg::product(X.Z->G, along.cwiseSign());
   }
   Box interval_hull(const Value& X, std::vector<Certificate>* why) const {
     if (why)

@@ -266,9 +266,10 @@ std::string violation(const Labels& labels, const PipelineOutcome& pipeline) {
         pipeline.name, time_text(labels, pipeline.violated_at));
   }
   return fmt::format(
-      "pipeline \"{}\" violates its guarantee: at {} the true state is proven outside the "
+      "pipeline \"{}\" violates its guarantee: at {} the true state is {} outside the "
       "estimate. This is a defect of its backend or observer",
-      pipeline.name, time_text(labels, pipeline.violated_at));
+      pipeline.name, time_text(labels, pipeline.violated_at),
+      pipeline.estimation()->outside_proven ? "proven" : "said to be");
 }
 
 void add_complaints(const Study& study, const PipelineOutcome& pipeline,

@@ -32,7 +32,7 @@ class Given final : public InputDesigner {
   DesignOutcome do_design(DesignControl& control) const override {
     const Matrix& input = params_.matrix("input");
     const Index horizon = input.rows() - 1;
-    const designers::TubeSpan span = designers::span_from(params_, horizon);
+    const TubeSpan span = designers::span_from(params_, horizon);
     const designers::Stop stop = [&] { return control.stop(); };
     DesignOutcome outcome;
     outcome.status = DesignStatus::given;

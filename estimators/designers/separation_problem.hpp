@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tubes/separation.hpp"
+#include "cordon/tubes/separation.hpp"
 
 namespace cordon::designers {
 

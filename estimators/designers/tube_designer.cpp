@@ -26,7 +26,7 @@ Answer is_empty_under(const TubeConditions& rows, VectorIn u) {
   if (rows.b.size() == 0) return if_met;
   const Vector terms = rows.terms(u.cwiseAbs());
   const Answer empty =
-      BoxedProgram(rows.A, rows.b + linalg::product(rows.Omega, u), {terms, row_noise * terms})
+      BoxedProgram(rows.A, rows.b + linalg::product(rows.Omega, u), {terms, tube_row_noise * terms})
           .is_empty();
   return empty == Answer::no ? if_met : empty;
 }

@@ -104,7 +104,7 @@ class Weighted {
     }
     if (view.estimate.consistent == Answer::no || !view.hull.is_bounded()) return std::nullopt;
     if (form.lines() == 0 && form.constraints() == 0)
-      return View{invariant::enclosing_zonotope(form).G, true};
+      return View{invariant::enclosing_zonotope(form).G, view.estimate.set->has_exact_form()};
     return View{view.hull.radius().asDiagonal(), false};
   }
   const Matrix& weight() const { return weight_; }

@@ -50,7 +50,7 @@ Enclosure IntervalObserver::do_start(const std::optional<Enclosure>& X0, const S
   set(start->interval_hull());
   if (!X0) {
     inner_.start(X0_);
-  } else if (start->backend().info().exact_exchange) {
+  } else if (start->has_exact_form()) {
     inner_.start(start->line_form());
   } else {
     inner_.end();

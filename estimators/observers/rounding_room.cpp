@@ -107,7 +107,7 @@ Enclosure RoundingRoom::correct(const Enclosure& X, const CorrectionArgs& measur
 Box reach_of(const Set& X) {
   const Complexity size = X.complexity();
   if (size.constraints == 0 && size.lines == 0) return X.interval_hull();
-  if (!X.backend().info().exact_exchange) return X.interval_hull();
+  if (!X.has_exact_form()) return X.interval_hull();
   const LineForm form = X.line_form();
   Vector widths = form.G.cwiseAbs().rowwise().sum();
   for (Index i = 0; i < widths.size(); ++i) {

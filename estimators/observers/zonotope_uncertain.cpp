@@ -39,7 +39,7 @@ class ZonotopeUncertain final : public Observer {
     limit_.start(recursion_.complete(), X_);
     if (!X0) {
       inner_.start(X0_);
-    } else if (backend().info().exact_exchange) {
+    } else if (X_->has_exact_form()) {
       inner_.start(X_->line_form());
     } else {
       inner_.end();

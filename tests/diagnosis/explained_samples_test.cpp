@@ -117,7 +117,7 @@ TEST_CASE("a mode that explains the samples is not excluded, in whatever coordin
     const Index steps = 7;
     const Experiment all = experiment(model, draw, steps);
     for (Index k = 0; k <= steps; ++k) {
-      const designers::OutputTube tube = designers::output_tube(model, *backend, {k});
+      const OutputTube tube = output_tube(model, *backend, {k});
       const Vector u = all.u.head(k + 1), y = all.y.head(k + 1);
       const Answer answer = diagnosers::membership(tube, u, y);
       CHECK(answer != Answer::no);

@@ -110,7 +110,7 @@ TEST_CASE("membership agrees with rational arithmetic, and its proofs hold there
     const std::vector<Sample> samples =
         random_samples(model, draw, steps, draw.below(3) == 0 ? 0 : 8);
     const Stacked all = stacked(samples);
-    const designers::OutputTube tube = designers::output_tube(model, *backend, {steps});
+    const OutputTube tube = output_tube(model, *backend, {steps});
     Certificate why;
     const Answer answer = diagnosers::membership(tube, all.u, all.y, &why);
     if (answer == Answer::unknown) {
@@ -148,7 +148,7 @@ TEST_CASE("a mode without outputs that could differ is never excluded") {
   model.linear = {{}, Matrix{{1}}, Matrix{{1}}, Matrix{{1}}, Matrix{{1}}, Matrix{{0}}, Matrix{{1}}};
   model.X0 = model.V = make_space(1);
   model.W = box(1, .1);
-  const auto tube = designers::output_tube(model, *examples::backend("line_zonotope"), {2});
+  const auto tube = output_tube(model, *examples::backend("line_zonotope"), {2});
   Certificate why;
   CHECK(diagnosers::membership(tube, Vector{{1, 2, 3}}, Vector{{1e6, -1e6, 5}}, &why) ==
         Answer::yes);
@@ -163,7 +163,7 @@ TEST_CASE("what may stem from rounding of large numbers excludes nothing") {
                     Matrix{{1}}, Matrix{{1}}, Matrix{{1}}};
     model.X0 = model.W = box(1, .1);
     model.V = make_zonotope(Vector{{offset}}, Matrix{{.1}});
-    const auto tube = designers::output_tube(model, *examples::backend("zonotope"), {1});
+    const auto tube = output_tube(model, *examples::backend("zonotope"), {1});
     return diagnosers::membership(tube, Vector{{input, 0}},
                                   Vector{{input + offset + first, output}});
   };
@@ -183,6 +183,6 @@ TEST_CASE("numbers that overflow are an error, not an answer") {
   Model model;
   model.linear = {{}, Matrix{{1}}, Matrix{{4}}, Matrix{{1}}, Matrix{{1}}, Matrix{{0}}, Matrix{{1}}};
   model.X0 = model.W = model.V = box(1, 1);
-  const auto tube = designers::output_tube(model, *examples::backend("zonotope"), {1});
+  const auto tube = output_tube(model, *examples::backend("zonotope"), {1});
   CHECK_THROWS_AS(diagnosers::membership(tube, Vector{{1e308, 0}}, Vector{{0, 0}}), Error);
 }

@@ -14,7 +14,6 @@ namespace cordon::examples {
 
 using designers::Cost;
 using designers::InputSequences;
-using designers::PairProgram;
 using designers::SeparationProblem;
 
 /// All inputs within ±radius but the first `fixed` ones, which are 0.
@@ -43,15 +42,15 @@ inline PairProgram pair_of(Index i, Index j, const Matrix& G, const Vector& c, c
 /// Section 6.2 with u_0 = (.5, -1), |u| ≤ 8 and that reference.
 inline SeparationProblem published_problem(Index horizon, double epsilon,
                                            Cost::Kind kind = Cost::Kind::norm_1) {
-  std::vector<designers::OutputTube> tubes;
+  std::vector<OutputTube> tubes;
   SeparationProblem problem;
   problem.horizon = horizon;
   problem.inputs = 2;
   for (const Mode& mode : four_descriptor_models().modes) {
-    tubes.push_back(designers::output_tube(mode.model, *backend("line_zonotope"), {horizon}));
-    problem.conditions.push_back(designers::conditions_of(tubes.back()));
+    tubes.push_back(output_tube(mode.model, *backend("line_zonotope"), {horizon}));
+    problem.conditions.push_back(conditions_of(tubes.back()));
   }
-  problem.pairs = designers::pair_programs(tubes);
+  problem.pairs = pair_programs(tubes);
   const Index n = 2 * (horizon + 1);
   problem.cost = {kind, Vector::Ones(n), numbers({.5, -1}).replicate(horizon + 1, 1)};
   problem.U = boxed_inputs(n, 8, 2);
@@ -61,12 +60,11 @@ inline SeparationProblem published_problem(Index horizon, double epsilon,
 }
 
 inline SeparationProblem scalar_problem(double epsilon) {
-  std::vector<designers::OutputTube> tubes;
+  std::vector<OutputTube> tubes;
   for (const Mode& mode : three_scalar_models().modes) {
-    tubes.push_back(designers::output_tube(mode.model, *backend("line_zonotope"), {3}));
+    tubes.push_back(output_tube(mode.model, *backend("line_zonotope"), {3}));
   }
-  return problem_of(designers::pair_programs(tubes), boxed_inputs(4, 2), Cost::Kind::norm_1,
-                    epsilon);
+  return problem_of(pair_programs(tubes), boxed_inputs(4, 2), Cost::Kind::norm_1, epsilon);
 }
 
 inline Matrix random_matrix(std::mt19937& random, Index rows, Index cols) {

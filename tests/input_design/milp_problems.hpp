@@ -12,15 +12,14 @@ namespace cordon::examples {
 inline designers::SeparationProblem separation_problem(const ModeBank& bank, Index horizon,
                                                        double range, const Vector& reference,
                                                        const Vector& first_input) {
-  std::vector<designers::OutputTube> tubes;
+  std::vector<OutputTube> tubes;
   for (const Mode& mode : bank.modes)
-    tubes.push_back(designers::output_tube(mode.model, *backend("line_zonotope"), {horizon}));
+    tubes.push_back(output_tube(mode.model, *backend("line_zonotope"), {horizon}));
   designers::SeparationProblem problem;
   problem.horizon = horizon;
   problem.inputs = bank[0].model.linear.inputs();
-  problem.pairs = designers::pair_programs(tubes);
-  for (const designers::OutputTube& tube : tubes)
-    problem.conditions.push_back(designers::conditions_of(tube));
+  problem.pairs = pair_programs(tubes);
+  for (const OutputTube& tube : tubes) problem.conditions.push_back(conditions_of(tube));
   const Index n = problem.inputs * (horizon + 1), fixed = first_input.size();
   problem.U = {Vector::Zero(n), Matrix::Zero(n, n - fixed), Matrix(0, n - fixed), Vector(0)};
   problem.U.c.head(fixed) = first_input;
@@ -38,8 +37,7 @@ inline designers::SeparationProblem scalar_problem() {
 }
 
 /// m rows and g ≥ m generators, which `inputs` inputs enter in `rank` dimensions.
-inline designers::PairProgram random_pair(std::mt19937& random, Index m, Index g, Index inputs,
-                                          Index rank) {
+inline PairProgram random_pair(std::mt19937& random, Index m, Index g, Index inputs, Index rank) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   const auto matrix = [&](Index rows, Index cols) {
     return Matrix(Matrix::NullaryExpr(rows, cols, [&] { return uniform(random); }));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tubes/separation.hpp"
+#include "cordon/tubes/separation.hpp"
 
 #include <cmath>
 #include <random>

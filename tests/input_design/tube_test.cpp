@@ -5,9 +5,9 @@
 
 #include "cordon/solvers/exact_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "cordon/tubes/output_tube.hpp"
 #include "input_design/plugins.hpp"
 #include "input_design/systems.hpp"
-#include "tubes/output_tube.hpp"
 
 using namespace cordon;
 using namespace cordon::designers;

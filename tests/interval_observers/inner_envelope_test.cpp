@@ -261,8 +261,11 @@ TEST_CASE("an inner estimate is offered of sets that are known exactly only") {
         registry().make<cordon::ObserverEntry>(name, {model, outward}, with_samples(params, 3));
     rounded->step(first);
     CHECK(rounded->inner_estimate().has_value());
+    rounded->start(outward->box({Vector::Constant(3, 2), Vector::Constant(3, 3)}));
+    rounded->step(first);
+    CHECK(rounded->inner_estimate().has_value());
     rounded->start(outward->box(
-        {Vector::Constant(3, 2), Vector::Constant(3, 3)}));  // whose exchange form encloses it
+        {Vector::Constant(3, .1), Vector::Constant(3, .7)}));  // whose exchange form encloses it
     rounded->step(first);
     CHECK_FALSE(rounded->inner_estimate().has_value());
 

@@ -30,9 +30,8 @@ Table table(const std::vector<Vector>& inputs, std::uint64_t first_seed, bool ve
   static const Plugins plugins;
   const auto backend = plugins.backend("line_zonotope");
   const ModeBank bank = four_models();
-  std::vector<designers::OutputTube> tubes;
-  for (const Mode& mode : bank.modes)
-    tubes.push_back(designers::output_tube(mode.model, *backend, {3}));
+  std::vector<OutputTube> tubes;
+  for (const Mode& mode : bank.modes) tubes.push_back(output_tube(mode.model, *backend, {3}));
   const Vector u = stacked(inputs);
   Table counts{};
   for (std::size_t i = 0; i < 4; ++i) {

@@ -87,7 +87,7 @@ TEST_CASE("doctor tells what became of every library, and returns 3 if any was r
         "shadowed  " CORDON_BAD_PLUGINS "/repeats_plugin.so",
         "by " CORDON_GOOD_PLUGINS "/test_box.so",
         "refused   " CORDON_BAD_PLUGINS "/wrong_version.so",
-        "why: it was built for plugin ABI 3, this is 2", "fix: rebuild the plugin", "gxx_abi="}) {
+        "why: it was built for plugin ABI 4, this is 3", "fix: rebuild the plugin", "gxx_abi="}) {
     CHECK_MESSAGE(contains(text.out, part), part);
   }
   const Outcome machine = cordon_with(with_good + with_bad + "doctor --json");

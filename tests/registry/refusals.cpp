@@ -83,7 +83,7 @@ const BadPlugin bad_plugins[] = {
      "rebuild the plugin with this installation's headers and flags"},
     {"wrong_tag", "simd: avx2 in the plugin, absent here",
      "rebuild the plugin with this installation's headers and flags"},
-    {"wrong_version", "it was built for plugin ABI 3, this is 2",
+    {"wrong_version", "it was built for plugin ABI 4, this is 3",
      "rebuild the plugin with this installation's headers and flags"},
 #if defined(CORDON_SANITIZED_PLUGINS)
     {"linked_with_sanitizer", "exit code 1; it said: ==", "repair or remove it"},

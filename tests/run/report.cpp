@@ -300,6 +300,8 @@ TEST_CASE("an inner estimate outside the hull is a violated guarantee") {
   crooked = {};
   crooked.violated_at = 0;
   CHECK(apps::exit_of(outcome) == apps::Exit::violated);
+  CHECK(has(apps::complaints({}, outcome)[1], "the true state is said to be outside"));
+  crooked.estimation()->outside_proven = true;
   CHECK(has(apps::complaints({}, outcome)[1], "the true state is proven outside"));
 }
 

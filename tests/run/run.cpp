@@ -144,9 +144,9 @@ TEST_CASE("what a check of the run needs: data, assumptions, counts of proven an
   CHECK(pipeline["assumptions"]["initial_set"]["dim"] == 2);
   CHECK(pipeline["assumptions"]["admissible_set"].is_null());
   const json& answers = pipeline["summary"]["answers"];
-  CHECK(answers["emptiness"]["proven"] == 21);
-  CHECK(answers["containment"]["proven"] == 21);
-  CHECK(answers["bounds"]["proven"] == 84);
+  CHECK(answers["emptiness"]["decided"] == 21);
+  CHECK(answers["containment"]["decided"] == 21);
+  CHECK(answers["bounds"]["decided"] == 84);
   CHECK(answers["bounds"]["unknown"] == 0);
 }
 
@@ -170,7 +170,7 @@ TEST_CASE("the tables hold the same numbers") {
   REQUIRE(summary.size() == 3);
   CHECK(summary[0] ==
         "pipeline,backend,observer,rounding,steps,consistent,inconsistent,undecided,"
-        "inconsistent_from,assumptions_until,outside_from,violated_at,answers_proven,"
+        "inconsistent_from,assumptions_until,outside_from,violated_at,answers_decided,"
         "answers_unknown,error,radius_max");
   CHECK(summary[2].starts_with("q,box,recursive,nominal,21,21,0,0,,,,,126,0,,"));
 }

@@ -81,7 +81,7 @@ TEST_CASE(
   CHECK(repeat.at("outside_from") == 0);
   CHECK(is_none(repeat, "assumptions_until"));
   CHECK(is_none(repeat, "violated_at"));
-  CHECK(repeat.at("answers_proven") == 36);
+  CHECK(repeat.at("answers_decided") == 36);
   CHECK(repeat.at("answers_unknown") == 7);
   CHECK(is_none(repeat, "inner_share"));
   CHECK(is_none(repeat, "inner_outside"));

@@ -30,7 +30,7 @@ std::optional<ForbiddenReach> ForbiddenReach::of(const SeparationProblem& proble
   const Vector terms = rows.factor * rows.scale.cwiseProduct(pair.terms(star.centre.cwiseAbs()));
   for (double share = widest_room; share > narrowest_room; share /= 2) {
     const Vector room = share * size;
-    BoxedProgram moved(G, c, {terms, room + row_noise * terms});
+    BoxedProgram moved(G, c, {terms, room + tube_row_noise * terms});
     if (moved.is_empty() != cordon::Answer::no) continue;
     return ForbiddenReach(pair, star, std::move(rows), std::move(G), N, c, room);
   }
@@ -54,8 +54,8 @@ ForbiddenReach::Answer ForbiddenReach::along(const Vector& v) const {
     if (!facet.a.isZero(0)) answer.facet = facet;
   }
   const Vector inside = xi.head(g).cwiseMax(-1.0).cwiseMin(1.0);
-  const double noise =
-      row_noise + static_cast<double>(g + N_.cols() + 4) * std::numeric_limits<double>::epsilon();
+  const double noise = tube_row_noise + static_cast<double>(g + N_.cols() + 4) *
+                                            std::numeric_limits<double>::epsilon();
   Vector size = star_->centre.cwiseAbs();
   size(star_->free) += most * v.cwiseAbs();
   const Vector terms = rows_.factor * rows_.scale.cwiseProduct(pair_->terms(size));
@@ -67,7 +67,7 @@ ForbiddenReach::Answer ForbiddenReach::along(const Vector& v) const {
 }
 
 double ForbiddenReach::inverse_within(const Vector& size) const {
-  const Vector moved = (1 + row_noise) * linalg::product(N_.cwiseAbs(), size);
+  const Vector moved = (1 + tube_row_noise) * linalg::product(N_.cwiseAbs(), size);
   return moved.size() ? moved.cwiseQuotient(room_).maxCoeff() : 0;
 }
 

@@ -19,7 +19,7 @@ using linalg::transposed_product;
 namespace {
 
 constexpr double rank_tolerance =
-    row_noise;  ///< of the terms: what inputs move less cannot be told from rounding
+    tube_row_noise;  ///< of the terms: what inputs move less cannot be told from rounding
 constexpr double flat_tolerance = 1e-9;       ///< of the terms
 constexpr double flat_distance = 1e-6;        ///< of the terms, see forbidden_set
 constexpr double point_accuracy = 1e-13;      ///< of the terms
@@ -60,7 +60,7 @@ class Support {
   bool is_met_within(const Vector& effect) {
     ++programs;
     const Matrix shares = L_.cwiseAbs().transpose();
-    const Vector error = effect + row_noise * pair_.terms;
+    const Vector error = effect + tube_row_noise * pair_.terms;
     return BoxedProgram(rows_, right_, {product(shares, pair_.terms), product(shares, error)})
                .is_empty() == cordon::Answer::no;
   }
@@ -73,7 +73,7 @@ class Support {
     const double rounding =
         static_cast<double>(operations) * static_cast<double>(std::numeric_limits<Long>::epsilon());
     const LongMatrix by_inputs = L_.cast<Long>().transpose() * inputs.cast<Long>();
-    moved_ = (1 + row_noise) * by_inputs.cwiseAbs().rowwise().sum().cast<double>() +
+    moved_ = (1 + tube_row_noise) * by_inputs.cwiseAbs().rowwise().sum().cast<double>() +
              (tolerances::product_noise + rounding) * product(shares, pair_.terms);
     room_ = Vector::Zero(moved_.size());
     for (double share = most_room; share > least_room; share /= 2) {
@@ -91,7 +91,7 @@ class Support {
     const Vector h = product(R_, d);
     const double least =  // of hᵀz
         h.dot(c_) - pair_.factor * transposed_product(pair_.G, h).cwiseAbs().sum();
-    return lambda_ * (std::max(0.0, level - least) + row_noise * terms_along(d));
+    return lambda_ * (std::max(0.0, level - least) + tube_row_noise * terms_along(d));
   }
   double terms_along(const Vector& d) const {
     return pair_.terms.dot(Vector(product(R_, d)).cwiseAbs());
@@ -123,7 +123,7 @@ class Support {
     const LongMatrix exactly = L_.cast<Long>().transpose() * reached;
     for (Index i = 0; i < residual.size(); ++i) {
       const double moved =
-          (1 + row_noise) * std::abs(static_cast<double>(exactly(i, 0))) + moved_[i];
+          (1 + tube_row_noise) * std::abs(static_cast<double>(exactly(i, 0))) + moved_[i];
       if (moved > 0) lambda_ = std::max(lambda_, room_[i] > 0 ? moved / (moved + room_[i]) : 1.0);
     }
     return Vector(pair_.factor * product(seen_, inside) + transposed_product(R_, c_));

@@ -36,9 +36,10 @@ struct ForbiddenSet {
 /// `room` before it is empty, which is proven, a residual r (with the effects of inputs that are
 /// too small to be told from rounding, and 1e-14 of the terms, by which the rows are rounded) costs
 /// a share of r / (r + room) of its size at most. `in` lies below the hull by that, and by
-/// `row_noise` of the terms of the facet, more than what rounding (one roundoff of the terms per
-/// operation) can add. So a relaxation by `in` misses no separating input, and the difference out -
-/// in is part of the reported gap: it is large where the modes nearly differ without any input.
+/// `tube_row_noise` of the terms of the facet, more than what rounding (one roundoff of the terms
+/// per operation) can add. So a relaxation by `in` misses no separating input, and the difference
+/// out - in is part of the reported gap: it is large where the modes nearly differ without any
+/// input.
 ///
 /// Where Q is flat (no width up to 1e-9 of the terms), every input off it separates, however near:
 /// there is no cheapest one. `out` then asks for a distance of 1e-6 of the terms, so that a proof

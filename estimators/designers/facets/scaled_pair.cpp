@@ -14,7 +14,7 @@ namespace {
 
 constexpr double outer_rounding =
     1e-14;  ///< of the terms: γ_n of the sums below, with room for thousands of them
-constexpr double inner_rounding = row_noise;  ///< of the terms, see forbidden_set
+constexpr double inner_rounding = tube_row_noise;  ///< of the terms, see forbidden_set
 
 }  // namespace
 

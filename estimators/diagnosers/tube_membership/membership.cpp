@@ -8,7 +8,7 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
 #include "cordon/solvers/boxed_program.hpp"
-#include "tubes/line_proof.hpp"
+#include "cordon/tubes/line_proof.hpp"
 
 namespace cordon::diagnosers {
 
@@ -47,7 +47,7 @@ Vector with_rows_of_missing(const Vector& multipliers, Index m, const std::vecto
 
 }  // namespace
 
-Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y, Certificate* why) {
+Answer membership(const OutputTube& tube, VectorIn u, VectorIn y, Certificate* why) {
   const LineForm Y = tube.at(u);
   const std::vector<Index> present = values_of(y);
   const Index m = Y.constraints(), p = static_cast<Index>(present.size());
@@ -69,16 +69,16 @@ Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y, Cer
   const LinesEliminated rest = eliminate_lines_traced(rows, magnitude);
   Certificate proof;
   const Vector row_terms =
-      linalg::product(rest.rows.cwiseAbs(), terms + designers::TermsOfLines(rows.S, rest, 0).terms);
-  Answer empty = BoxedProgram(rest.set.A, rest.set.b, {row_terms, designers::row_noise * row_terms})
+      linalg::product(rest.rows.cwiseAbs(), terms + TermsOfLines(rows.S, rest, 0).terms);
+  Answer empty = BoxedProgram(rest.set.A, rest.set.b, {row_terms, tube_row_noise * row_terms})
                      .is_empty(&proof);
   if (empty == Answer::no && rest.vanished > 0)
     empty = Answer::unknown;  // what vanished is not shown to hold
   Certificate whole = empty == Answer::unknown ? Certificate{} : traced(rest, proof);
-  const designers::LinesReached reached{
+  const LinesReached reached{
       rest.lines_offset.cwiseAbs() + rest.lines_by_factors.cwiseAbs().rowwise().sum(),
       rest.free_lines};
-  if (empty == Answer::yes && !designers::stands(rows, terms, whole.data, reached)) {
+  if (empty == Answer::yes && !proves_empty_through_lines(rows, terms, whole.data, reached)) {
     empty = Answer::unknown;  // what the elimination has lost is as large as the proof
     whole = {};
   }

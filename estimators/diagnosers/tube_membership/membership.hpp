@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cordon/core/answer.hpp"
-#include "tubes/output_tube.hpp"
+#include "cordon/tubes/output_tube.hpp"
 
 namespace cordon::diagnosers {
 
@@ -13,7 +13,6 @@ namespace cordon::diagnosers {
 /// of them are 0. The lines, which hold the states, are eliminated, and a linear program in ξ is
 /// left: `no` by a Farkas vector of it, `yes` by a solution of it. `why` is that proof for the rows
 /// above, as `contains` gives it: multipliers of rows, or (δ, ξ).
-Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y,
-                  Certificate* why = nullptr);
+Answer membership(const OutputTube& tube, VectorIn u, VectorIn y, Certificate* why = nullptr);
 
 }  // namespace cordon::diagnosers

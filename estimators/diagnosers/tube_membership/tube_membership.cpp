@@ -88,8 +88,7 @@ class TubeMembership final : public Diagnoser {
       if (!candidate[j]) continue;
       const std::optional<TimedModel> model = model_of(j, now, u);
       if (!model) continue;
-      const designers::OutputTube tube =
-          designers::output_tube(*model, backend(), {now.k - since_, false, admissible_});
+      const OutputTube tube = output_tube(*model, backend(), {now.k - since_, false, admissible_});
       Certificate why;
       const Answer answer = diagnosers::membership(tube, u, y, &why);
       candidate[j] = answer != Answer::no;

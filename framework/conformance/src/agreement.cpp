@@ -175,7 +175,7 @@ Verdict check_certificates(const Context& context, const TestCase& test) {
   columns.G << FX.G, FX.M;
   for (const Vector& d : directions({columns}, n, random, 4)) {
     why = {};
-    const double h = X.support(d, &why);
+    const double h = X.support(d, nullptr, &why);
     if (!numeric() || h == infinity) continue;
     const double bound = h == -infinity ? h : h + reference.tolerance(d);
     if (!proves_support(FX, d, bound, why))

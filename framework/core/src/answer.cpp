@@ -28,6 +28,8 @@ std::string_view to_string(Certificate::Kind kind) noexcept {
       return "direction";
     case Certificate::Kind::structure:
       return "structure";
+    case Certificate::Kind::rows:
+      return "rows";
   }
   return "none";
 }

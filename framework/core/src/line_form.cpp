@@ -154,6 +154,28 @@ LineForm make_box(const Box& box) {
   return X;
 }
 
+namespace {
+
+/// a + b = s without rounding? [Ogita2005]
+bool is_sum(double a, double b, double s) {
+  const double part = s - a;
+  return a + b == s && (a - (s - part)) + (b - part) == 0;
+}
+
+}  // namespace
+
+bool is_exact_form_of(const Box& box) {
+  if (box.is_empty()) return true;
+  const LineForm X = make_box(box);
+  for (Index i = 0; i < X.dim(); ++i) {
+    if (!std::isfinite(box.lower[i])) continue;
+    const double radius = X.generators() ? X.G.row(i).cwiseAbs().maxCoeff() : 0.0;
+    if (!is_sum(X.c[i], radius, box.upper[i]) || !is_sum(X.c[i], -radius, box.lower[i]))
+      return false;
+  }
+  return true;
+}
+
 LineForm make_strip(VectorIn rho, double d, double sigma) {
   if (sigma < 0) throw Error(Errc::invalid, "strip: the half width is negative");
   const Index n = rho.size();

@@ -9,6 +9,7 @@
 #include "cordon/core/rounding.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "cordon/core/vectors.hpp"
+#include "cordon/solvers/view_questions.hpp"
 
 namespace cordon {
 
@@ -37,24 +38,6 @@ void require_vector(VectorIn t, Index size, const char* what) {
   }
   if (!vectors::all_finite(t))
     throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
-}
-
-/// a + b = s without rounding? [Ogita2005]
-bool is_sum(double a, double b, double s) {
-  const double part = s - a;
-  return a + b == s && (a - (s - part)) + (b - part) == 0;
-}
-
-/// Has the box X, made from `box`, exactly its bounds?
-bool has_bounds(const LineForm& X, const Box& box) {
-  if (box.is_empty()) return true;
-  for (Index i = 0; i < X.dim(); ++i) {
-    if (!std::isfinite(box.lower[i])) continue;
-    const double radius = X.generators() ? X.G.row(i).cwiseAbs().maxCoeff() : 0.0;
-    if (!is_sum(X.c[i], radius, box.upper[i]) || !is_sum(X.c[i], -radius, box.lower[i]))
-      return false;
-  }
-  return true;
 }
 
 const Set& require_set(const Enclosure& X, const char* what) {
@@ -91,8 +74,8 @@ Made fitting(Made made, Index dim, const BackendInfo& info, const char* operatio
 /// What is computed on exchange forms that enclose their sets is outer, whatever the import of the
 /// result claims.
 template <class Made>
-Made through_exchange(const BackendInfo& info, Made made) {
-  if (!info.exact_exchange) made.tightness = Tightness::outer;
+Made through_exchange(bool exact_forms, Made made) {
+  if (!exact_forms) made.tightness = Tightness::outer;
   return made;
 }
 
@@ -114,15 +97,20 @@ Enclosure SetBackend::import(const LineForm& X, Tightness claim) const {
 Enclosure SetBackend::import(const Enclosure& X) const {
   const Set& set = require_set(X, "import");
   if (&set.backend() == this) return X;
-  const Tightness exchange =
-      set.backend().info().exact_exchange ? Tightness::exact : Tightness::outer;
-  return import(set.line_form(), meet(X.tightness, exchange));
+  View view = set.view();
+  view.claim = meet(X.tightness, view.claim);
+  return view.rows.rows() == 0 ? import(view.form, view.claim) : import(view);
+}
+
+Enclosure SetBackend::import(const View& X) const {
+  check(X, "import into " + info_.name);
+  return adopt(fitting(do_import_view(X), X.dim(), info_, "import"), X.claim);
 }
 
 Enclosure SetBackend::box(const Box& box) const {
   const LineForm X = make_box(box);
   // with outward rounding, a box whose centre or radius was rounded is enclosed only
-  const bool rounded = info_.rounding == Rounding::outward && !has_bounds(X, box);
+  const bool rounded = info_.rounding == Rounding::outward && !is_exact_form_of(box);
   return import(X, rounded ? Tightness::outer : Tightness::exact);
 }
 Enclosure SetBackend::point(VectorIn x) const { return import(make_point(x)); }
@@ -200,11 +188,17 @@ Enclosure SetBackend::sum(const Enclosure& X, const Enclosure& Y) const {
 
 Enclosure SetBackend::product(const Enclosure& X, const Enclosure& Y) const {
   const Index n = require_set(X, "product").dim(), m = require_set(Y, "product").dim();
+  const Own left_own(*this, X), right_own(*this, Y);
+  Made own = do_product(*left_own.enclosure.set, *right_own.enclosure.set);
+  if (own.set) {
+    return adopt(fitting(std::move(own), n + m, info_, "product"),
+                 meet(left_own.enclosure.tightness, right_own.enclosure.tightness));
+  }
   Matrix left = Matrix::Zero(n + m, n), right = Matrix::Zero(n + m, m);
   left.topRows(n).setIdentity();
   right.bottomRows(m).setIdentity();
-  const Term term{right, Y};
-  return predict(X, {left, Vector::Zero(n + m), {&term, 1}});
+  const Term term{right, right_own.enclosure};
+  return predict(left_own.enclosure, {left, Vector::Zero(n + m), {&term, 1}});
 }
 
 Enclosure SetBackend::intersection(const Enclosure& X, MatrixIn R, const Enclosure& Y) const {
@@ -225,11 +219,13 @@ Enclosure SetBackend::convex_hull(const Enclosure& X, const Enclosure& Y) const 
 
 SetBackend::Made SetBackend::do_predict(const Set& X, const PredictionArgs& p) const {
   LineForm sum = cordon::affine_map(X.line_form(), p.A, p.f);
+  bool exact = X.has_exact_form();
   for (const Term& term : p.terms) {
+    exact = exact && term.set->has_exact_form();
     sum = minkowski_sum(
         sum, cordon::affine_map(term.set->line_form(), term.T, Vector::Zero(p.A.rows())));
   }
-  return through_exchange(info_, do_import(sum));
+  return through_exchange(exact, do_import(sum));
 }
 
 namespace {
@@ -278,13 +274,13 @@ SetBackend::Made SetBackend::do_correct(const Set& X, const CorrectionArgs& c) c
       (right.array().abs() <= tolerances::product_noise * terms.array()).select(0.0, right).eval();
   if (info_.rounding == Rounding::nominal)
     kept = with_room(std::move(kept), noise_free_terms(c, state, noise, terms));
-  return through_exchange(info_, do_import(kept));
+  return through_exchange(X.has_exact_form() && c.noise.set->has_exact_form(), do_import(kept));
 }
 
 SetBackend::Made SetBackend::do_interval_map(const Set& X, const IntervalMatrix& A) const {
   // A x = mid(A) x + Δ x with |Δ x| ≤ rad(A) |x|, |x| bounded by the interval hull
   const LineForm mapped = cordon::affine_map(X.line_form(), A.center, Vector::Zero(A.rows()));
-  if (A.is_exact()) return through_exchange(info_, do_import(mapped));
+  if (A.is_exact()) return through_exchange(X.has_exact_form(), do_import(mapped));
   const Box hull = X.interval_hull();
   if (hull.is_empty()) return do_import(make_empty(A.rows()));
   Box spread{Vector::Zero(A.rows()), Vector::Zero(A.rows())};
@@ -304,15 +300,28 @@ SetBackend::Made SetBackend::do_interval_map(const Set& X, const IntervalMatrix&
 }
 
 SetBackend::Made SetBackend::do_intersection(const Set& X, MatrixIn R, const Set& Y) const {
-  return through_exchange(info_, do_import(cordon::intersection(X.line_form(), R, Y.line_form())));
+  return through_exchange(X.has_exact_form() && Y.has_exact_form(),
+                          do_import(cordon::intersection(X.line_form(), R, Y.line_form())));
 }
 
 SetBackend::Made SetBackend::do_convex_hull(const Set& X, const Set& Y) const {
   const LineForm A = X.line_form(), B = Y.line_form();
-  Made made = through_exchange(info_, do_import(cordon::convex_hull(A, B)));
+  Made made = through_exchange(X.has_exact_form() && Y.has_exact_form(),
+                               do_import(cordon::convex_hull(A, B)));
   if (A.lines() > 0 || B.lines() > 0) made.tightness = Tightness::outer;
   return made;
 }
+
+SetBackend::Made SetBackend::do_import_view(const View& X) const {
+  const Folded form = folded(X);
+  Made made = do_import(form.form);
+  made.tightness = meet(made.tightness, form.claim);
+  if (X.rows.rows() > 0 && info_.rounding != Rounding::nominal)
+    made.tightness = Tightness::outer;  // what rounds the constraints is added to their slack
+  return made;
+}
+
+SetBackend::Made SetBackend::do_product(const Set&, const Set&) const { return {}; }
 
 SetBackend::Made SetBackend::do_reduce(const Set&, Budget) const { return {}; }
 

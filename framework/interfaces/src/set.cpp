@@ -9,6 +9,8 @@
 #include "cordon/interfaces/backend.hpp"
 #include "cordon/solvers/outward_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "cordon/solvers/view_questions.hpp"
+#include "direction_apart.hpp"
 
 namespace cordon {
 
@@ -57,56 +59,127 @@ bool is_within(const Box& X, const Box& Y) {
 
 Answer only(Answer allowed, Answer answer) { return answer == allowed ? answer : Answer::unknown; }
 
+/// What is said of the set that a view writes down, of a set that the view may only hold.
+Answer as_claimed(const View& X, Answer allowed, Answer answer, Certificate* why) {
+  if (X.claim == Tightness::exact || answer == allowed) return answer;
+  if (why && answer != Answer::unknown) *why = {};
+  return Answer::unknown;
+}
+
 }  // namespace
 
-bool Set::exact_exchange() const { return backend_->info().exact_exchange; }
+Index Complexity::count(std::string_view name) const {
+  if (name == "generators") return generators;
+  if (name == "lines") return lines;
+  if (name == "constraints") return constraints;
+  for (const Named& other : others) {
+    if (other.name == name) return other.count;
+  }
+  return 0;
+}
 
 LineForm Set::line_form() const { return do_line_form(); }
+
+View Set::view() const { return do_view(); }
+
+View Set::view_along(MatrixIn directions) const {
+  if (directions.rows() != dim_)
+    throw Error(Errc::dimension, "view: the directions have another dimension than the set");
+  Inequalities rows{Matrix(directions.cols(), dim_), Vector(directions.cols())};
+  Index kept = 0;
+  for (Index j = 0; j < directions.cols(); ++j) {
+    const double h = support(directions.col(j));
+    if (!std::isfinite(h)) continue;
+    rows.H.row(kept) = directions.col(j).transpose();
+    rows.h[kept++] = h;
+  }
+  rows.H.conservativeResize(kept, Eigen::NoChange);
+  rows.h.conservativeResize(kept);
+  return with_rows(view(), rows);
+}
 
 Answer Set::is_empty(Certificate* why) const { return do_is_empty(why); }
 
 Answer Set::contains(VectorIn x, Certificate* why) const {
   require(x, dim_, "contains");
-  return do_contains(x, why);
+  const Answer answer = do_contains(x, why);
+  if (answer != Answer::unknown || has_exact_form() || dim_ == 0) return answer;
+  const auto direction = direction_apart(*this, x);
+  if (!direction) return answer;
+  if (why) *why = *direction;
+  return Answer::no;
 }
 
 Answer Set::is_subset_of(const Set& other, Certificate* why) const {
   require_same(*this, other, "is_subset_of");
   if (this == &other) return Answer::yes;
-  const LineForm right = other.line_form();
+  if (&other.backend() == backend_) {
+    const Answer own = do_is_subset_of(other, why);
+    if (own != Answer::unknown) return own;
+  }
+  const View right = other.view();
+  const Answer form = is_within_form(other, right, why);
+  if (right.rows.rows() == 0 || form != Answer::yes || is_empty() == Answer::yes) return form;
+  if (why) *why = {};
+  for (Index i = 0; i < right.rows.rows(); ++i) {
+    if (!(support(right.rows.H.row(i).transpose()) <= right.rows.h[i])) return Answer::unknown;
+  }
+  return Answer::yes;
+}
+
+/// In the form of another set's view, and by that in the set, as far as it has no inequalities?
+Answer Set::is_within_form(const Set& other, const View& right, Certificate* why) const {
   const Answer answer = is_outward(*this) || is_outward(other)
-                            ? outward::is_subset(line_form(), right, why)
-                            : is_subset(line_form(), right, why);
-  // `yes` needs an exact right-hand side, `no` an exact left-hand side; an outer form of the other
-  // one only strengthens it
-  if (answer == Answer::yes && !other.exact_exchange() && is_empty() != Answer::yes)
-    return Answer::unknown;
-  if (answer == Answer::yes && is_box_form(right) &&
-      !is_within(interval_hull(), other.interval_hull())) {
+                            ? outward::is_subset(line_form(), right.form, why)
+                            : is_subset(line_form(), right.form, why);
+  const auto unknown = [why] {
     if (why) *why = {};
     return Answer::unknown;
-  }
-  if (answer == Answer::no && !exact_exchange()) return Answer::unknown;
+  };
+  // `yes` needs an exact right-hand side, `no` an exact left-hand side; an outer form of the other
+  // one only strengthens it
+  if (answer == Answer::yes && right.claim == Tightness::outer && is_empty() != Answer::yes)
+    return unknown();
+  if (answer == Answer::yes && is_box_form(right.form) &&
+      !is_within(interval_hull(), other.interval_hull()))
+    return unknown();
+  if (answer == Answer::no && !has_exact_form()) return unknown();
   return answer;
 }
 
 Answer Set::is_disjoint_from(const Set& other, Certificate* why) const {
   require_same(*this, other, "is_disjoint_from");
-  const LineForm left = line_form(), right = other.line_form();
-  Answer answer = is_disjoint(left, right, why);
-  if (answer == Answer::no && is_box_form(left) && is_box_form(right) &&
-      are_apart(interval_hull(), other.interval_hull())) {
-    answer = Answer::unknown;
-    if (why) *why = {};
+  if (&other.backend() == backend_) {
+    const Answer own = do_is_disjoint_from(other, why);
+    if (own != Answer::unknown) return own;
   }
-  return exact_exchange() && other.exact_exchange() ? answer : only(Answer::yes, answer);
+  const View left = view(), right = other.view();
+  Answer answer = is_disjoint(left, right, why);
+  const bool exact = left.claim == Tightness::exact && right.claim == Tightness::exact;
+  const auto unknown = [why] {
+    if (why) *why = {};
+    return Answer::unknown;
+  };
+  if (answer == Answer::no && is_box_form(left.form) && is_box_form(right.form) &&
+      are_apart(interval_hull(), other.interval_hull()))
+    return unknown();
+  if (answer == Answer::no && !exact) answer = unknown();
+  if (answer != Answer::unknown || exact || dim_ == 0) return answer;
+  const auto direction = direction_apart(*this, other);
+  if (!direction) return answer;
+  if (why) *why = *direction;
+  return Answer::yes;
 }
 
 Answer Set::is_bounded() const { return dim_ == 0 ? Answer::yes : do_is_bounded(); }
 
-double Set::support(VectorIn d, Certificate* why) const {
+double Set::support(VectorIn d, Vector* at, Certificate* why) const {
   require(d, dim_, "support");
   const double h = do_support(d, why);
+  if (at) {
+    *at = std::isfinite(h) ? do_maximizer(d) : Vector(0);
+    if (at->size() != dim_ || !at->allFinite()) at->resize(0);
+  }
   return std::isnan(h) ? infinity : h;
 }
 
@@ -136,29 +209,63 @@ Volume Set::volume() const {
   return {hull.is_bounded() ? value : infinity, false};
 }
 
+bool Set::do_has_exact_form() const { return backend_->info().exact_exchange; }
+
+View Set::do_view() const {
+  return {do_line_form(), {}, do_has_exact_form() ? Tightness::exact : Tightness::outer};
+}
+
 Answer Set::do_is_empty(Certificate* why) const {
-  const Answer answer = cordon::is_empty(do_line_form(), why);
-  return exact_exchange() ? answer : only(Answer::yes, answer);
+  const View X = do_view();
+  return as_claimed(X, Answer::yes, cordon::is_empty(X, why), why);
 }
 
 Answer Set::do_contains(VectorIn x, Certificate* why) const {
-  const Answer answer = cordon::contains(do_line_form(), x, why);
-  return exact_exchange() ? answer : only(Answer::no, answer);
+  const View X = do_view();
+  return as_claimed(X, Answer::no, cordon::contains(X, x, why), why);
 }
 
 Answer Set::do_is_bounded() const {
-  const Answer answer = cordon::is_bounded(do_line_form());
-  return exact_exchange() ? answer : only(Answer::yes, answer);
+  const View X = do_view();
+  const bool exact = X.is_exact_form();
+  const Answer answer = cordon::is_bounded(exact ? X.form : folded(X).form);
+  return exact ? answer : only(Answer::yes, answer);
 }
 
 double Set::do_support(VectorIn d, Certificate* why) const {
-  return is_outward(*this) ? outward::support(do_line_form(), d, why)
-                           : cordon::support(do_line_form(), d, why);
+  const View X = do_view();
+  const double alone =
+      is_outward(*this) ? outward::support(X.form, d, why) : cordon::support(X.form, d, why);
+  if (X.rows.rows() == 0) return alone;
+  Certificate proof;
+  const double value = cordon::support(X, d, &proof);
+  if (proof.kind != Certificate::Kind::rows || value >= alone) return alone;
+  if (why) *why = std::move(proof);
+  return value;
+}
+
+Vector Set::do_maximizer(VectorIn d) const {
+  return has_exact_form() ? maximizer(do_line_form(), d) : Vector(0);
 }
 
 Box Set::do_interval_hull(std::vector<Certificate>* why) const {
-  return is_outward(*this) ? outward::interval_hull(do_line_form(), why)
-                           : cordon::interval_hull(do_line_form(), why);
+  const View X = do_view();
+  Box hull =
+      is_outward(*this) ? outward::interval_hull(X.form, why) : cordon::interval_hull(X.form, why);
+  if (X.rows.rows() == 0 || hull.is_empty()) return hull;
+  for (Index i = 0; i < 2 * dim_; ++i) {
+    Certificate proof;
+    const double h = do_support((i % 2 ? -1 : 1) * Vector::Unit(dim_, i / 2), &proof);
+    if (h == -infinity) return Box::empty(dim_);
+    double& bound = i % 2 ? hull.lower[i / 2] : hull.upper[i / 2];
+    if (!(h < (i % 2 ? -bound : bound))) continue;
+    bound = i % 2 ? -h : h;
+    if (why) (*why)[as_size(i)] = std::move(proof);
+  }
+  for (Index i = 0; i < dim_; ++i) {
+    if (hull.lower[i] > hull.upper[i]) std::swap(hull.lower[i], hull.upper[i]);
+  }
+  return hull;
 }
 
 }  // namespace cordon

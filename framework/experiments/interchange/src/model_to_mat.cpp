@@ -100,7 +100,9 @@ std::optional<Box> as_box(const LineForm& X) {
   return equal(make_box(box), X) ? std::optional(box) : std::nullopt;
 }
 
-Value to_mat(const LineForm& X) {
+Value to_mat(const LineForm& X) { return to_mat(X, {}); }
+
+Value to_mat(const LineForm& X, const Inequalities& rows) {
   const std::optional<Box> box = as_box(X);
   const bool whole = box && X.dim() > 0 && X.lines() == X.dim();
   Struct set;
@@ -109,6 +111,7 @@ Value to_mat(const LineForm& X) {
   set.set("c", matrix(X.c)).set("G", matrix(X.G)).set("A", matrix(X.A)).set("b", matrix(X.b));
   set.set("M", matrix(X.M)).set("S", matrix(X.S));
   if (bounds) set.set("lower", matrix(box->lower)).set("upper", matrix(box->upper));
+  if (rows.rows() > 0) set.set("H", matrix(rows.H)).set("h", matrix(rows.h));
   return std::move(set).value();
 }
 

@@ -81,7 +81,7 @@ std::map<std::string, std::vector<Value>> sets_of(const detail::RecordedFiles& f
     if (budget < 0)
       refuse(files.directory() / "sets.jsonl", "holds more sets than one MAT-file takes",
              "leave out --sets");
-    sets[row->pipeline].push_back(mat::to_mat(X));
+    sets[row->pipeline].push_back(mat::to_mat(X, row->rows));
   }
   return sets;
 }

@@ -35,9 +35,10 @@ std::optional<FarkasTerms> farkas_terms(const System& s, VectorIn y);
 /// Their difference: positive, and the system has no solution.
 std::optional<Rational> farkas_margin(const System& s, VectorIn y);
 
-/// gᵀξ + tᵀδ ≤ bᵀy + ‖g - Aᵀy‖₁ for the y nearby with Lᵀy = t: that bound.
+/// gᵀξ + tᵀδ ≤ bᵀy + ‖g - Aᵀy‖₁ for the y nearby with Lᵀy = t: that bound. The last `inequalities`
+/// rows say K (δ, ξ) ≤ r in place of an equation: nothing if y is negative there.
 std::optional<Rational> dual_bound(const System& s, const RationalVector& t,
-                                   const RationalVector& g, VectorIn y);
+                                   const RationalVector& g, VectorIn y, Index inequalities = 0);
 
 /// The point (δ, ξ), moved onto the rows; nothing if it leaves the bounds then.
 std::optional<RationalVector> solution_near(const System& s, VectorIn point);

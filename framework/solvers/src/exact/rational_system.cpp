@@ -217,10 +217,13 @@ std::optional<Rational> farkas_margin(const System& s, VectorIn y) {
 }
 
 std::optional<Rational> dual_bound(const System& s, const RationalVector& t,
-                                   const RationalVector& g, VectorIn y) {
+                                   const RationalVector& g, VectorIn y, Index inequalities) {
   if (y.size() != s.K.rows() || !y.allFinite()) return std::nullopt;
   const auto moved = multipliers(s, t, y);
   if (!moved) return std::nullopt;
+  for (Index i = y.size() - inequalities; i < y.size(); ++i) {
+    if (sgn((*moved)[as_size(i)]) < 0) return std::nullopt;
+  }
   return Rational(dot(s.r, *moved) + distance(s, g, *moved));
 }
 

@@ -45,7 +45,7 @@ class MetricNames {
                                "outside_from",
                                "violated_at",
                                "answers",
-                               "answers_proven",
+                               "answers_decided",
                                "answers_unknown",
                                "numbers",
                                "step_us",

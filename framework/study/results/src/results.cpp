@@ -8,6 +8,7 @@
 #include "results_design.hpp"
 #include "results_diagnosis.hpp"
 #include "study/results/file_heads.hpp"
+#include "study/results/recorded_view.hpp"
 #include "study/results/results_parts.hpp"
 #include "study/results/sets_file.hpp"
 #include "study/results/table_builder.hpp"
@@ -35,7 +36,7 @@ std::string csv_value(const MetricValue& metric) {
 void write(JsonWriter& json, std::string_view name, const AnswerCount& count) {
   json.key(name)
       .begin_object()
-      .member("proven", count.proven)
+      .member("decided", count.decided)
       .member("unknown", count.unknown)
       .end_object();
 }
@@ -91,7 +92,7 @@ std::vector<std::string> summary_fields(const PipelineOutcome& outcome, const st
           csv_time(outcome.assumptions_until),
           time(&EstimationOutcome::outside_from),
           csv_time(outcome.violated_at),
-          answers(&AnswerCount::proven),
+          answers(&AnswerCount::decided),
           answers(&AnswerCount::unknown),
           csv_field(outcome.error)};
 }
@@ -301,14 +302,14 @@ void Results::write_row(const StepResult& result) {
 void Results::write_set(const StepResult& result) {
   if (sets_->kept() == KeptSets::none) return;
   const Estimate& estimate = result.estimate;
-  const LineForm X = estimate.set->line_form();
-  const bool exact = estimate.set->backend().info().exact_exchange;
+  const View X = recorded_view(*estimate.set, result.hull);
   StringSink line;
   JsonWriter json(line);
   json.begin_object().key("pipeline").raw(pipeline_json_).member("k", estimate.k);
   json.member("tightness", to_string(estimate.set.tightness));
-  json.member("exchange", to_string(exact ? Tightness::exact : Tightness::outer));
-  write_blocks(json, X);
+  json.member("exchange", to_string(X.claim));
+  write_blocks(json, X.form);
+  if (X.rows.rows() > 0) json.key("H").matrix(X.rows.H).member("h", X.rows.h);
   json.member("consistent", to_string(estimate.consistent));
   json.key("proof");
   write(json, estimate.why);
@@ -332,10 +333,10 @@ void Results::end_estimation(const PipelineOutcome& outcome, const MetricValues&
       .member("consistent", found.consistent)
       .member("inconsistent", found.inconsistent);
   results_.member("undecided", found.undecided);
-  write_time(results_, "inconsistent_from", found.inconsistent_from);
+  write_claim(results_, "inconsistent", found.inconsistent_from, found.inconsistent_proven);
   write_contradictions(results_, found);
   write_assumptions(results_, outcome, mode_names(study_));
-  write_time(results_, "outside_from", found.outside_from);
+  write_claim(results_, "outside", found.outside_from, found.outside_proven);
   write_time(results_, "violated_at", outcome.violated_at);
   write_inner(results_, found);
   write_growth(results_, found);
@@ -358,9 +359,9 @@ void Results::end_estimation(const PipelineOutcome& outcome, const MetricValues&
 
 void Results::write_summaries() {
   std::vector<std::string> names{
-      "pipeline",     "backend",      "observer",       "rounding",          "steps",
-      "consistent",   "inconsistent", "undecided",      "inconsistent_from", "assumptions_until",
-      "outside_from", "violated_at",  "answers_proven", "answers_unknown",   "error"};
+      "pipeline",     "backend",      "observer",        "rounding",          "steps",
+      "consistent",   "inconsistent", "undecided",       "inconsistent_from", "assumptions_until",
+      "outside_from", "violated_at",  "answers_decided", "answers_unknown",   "error"};
   const std::vector<std::string> none,
       &diagnosis = diagnosis_file_ ? diagnosis_summary_columns() : none,
       &design = inputs_file_ ? design_summary_columns() : none;

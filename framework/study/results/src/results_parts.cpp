@@ -26,6 +26,11 @@ void write_box(JsonWriter& json, std::string_view key, const Box& box) {
   json.key(key).begin_object().member("lower", box.lower).member("upper", box.upper).end_object();
 }
 
+void write_claim(JsonWriter& json, const std::string& name, std::int64_t from, bool proven) {
+  write_time(json, name + "_from", from);
+  if (from >= 0) json.member(name + "_proven", proven);
+}
+
 void write_blocks(JsonWriter& json, const LineForm& X) {
   json.member("dim", X.dim())
       .member("lines", X.lines())

@@ -4,6 +4,7 @@
 #include <deque>
 
 #include "cordon/core/tolerances.hpp"
+#include "host_checks.hpp"
 #include "pipeline_run.hpp"
 #include "study/checks/assumption_check.hpp"
 #include "study/checks/growth.hpp"
@@ -218,6 +219,9 @@ class EstimationRun final : public PipelineRun {
     const Vector& truth = passed_.front().truth;
     if (found_.outside_from < 0 && is_outside(estimate, truth)) {
       found_.outside_from = estimate.k;
+      found_.outside_proven = estimate.consistent == Answer::no
+                                  ? is_proven_empty(estimate)
+                                  : is_proven_outside(*estimate.set, truth);
       if (own_model_ && nominal_ && !check_->excuses(k, since_) &&
           !check_->excuses_by_rounding(k, barely_outside(estimate.set->line_form(), truth), since_))
         outcome_.violated_at = estimate.k;
@@ -261,7 +265,10 @@ class EstimationRun final : public PipelineRun {
         break;
       case Answer::no:
         ++found_.inconsistent;
-        if (found_.inconsistent_from < 0) found_.inconsistent_from = estimate.k;
+        if (found_.inconsistent_from < 0) {
+          found_.inconsistent_from = estimate.k;
+          found_.inconsistent_proven = is_proven_empty(estimate);
+        }
         break;
     }
   }

@@ -12,6 +12,7 @@
 #include "cordon/solvers/certificate.hpp"
 #include "cordon/solvers/exact_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "cordon/solvers/view_questions.hpp"
 #include "solvers/rational_questions.hpp"
 
 namespace cordon::verification {
@@ -38,6 +39,7 @@ StepCheck::StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding 
                      const Vector& margin)
     : step_(step),
       row_(row),
+      view_{row.set, row.rows, Tightness::outer},
       nominal_(rounding == Rounding::nominal),
       line_tolerance_(rounding == Rounding::nominal ? nominal_tolerance : outward_line_tolerance),
       size_(row.set.c.cwiseAbs() + row.set.G.cwiseAbs().rowwise().sum()) {
@@ -85,7 +87,7 @@ void StepCheck::emptiness_proof() {
   if (step_.consistent == Answer::unknown) return;
   if (row_.proof.kind == Certificate::Kind::none) return emptiness_without_proof();
   if (step_.consistent == Answer::no) {
-    if (!proves_empty(row_.set, row_.proof)) {
+    if (!proves_empty(view_, row_.proof)) {
       return violated(
           "the estimate is called empty, but the stored proof does not hold in rational arithmetic",
           true);
@@ -142,7 +144,7 @@ void StepCheck::bound_proof(Index i, bool upper) {
   const double slack = std::max(box_tolerance * size_[i], row_.set.lines() > 0 ? margin_[i] : 0.0);
   const std::size_t place = static_cast<std::size_t>(2 * i + (upper ? 0 : 1));
   const Certificate none, &why = place < row_.hull_proofs.size() ? row_.hull_proofs[place] : none;
-  if (why.kind != Certificate::Kind::none && proves_support(row_.set, d, bound + slack, why)) {
+  if (why.kind != Certificate::Kind::none && proves_support(view_, d, bound + slack, why)) {
     ++proofs_;
     return;
   }

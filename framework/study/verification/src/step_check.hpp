@@ -97,12 +97,17 @@ class StepCheck {
   void contains_direction(const Vector& d, bool line);
   Vector turned_by(const Vector& x) const;
   bool keeps_across_lines(const Vector& d, double limit) const;
+  /// What the recorded inequalities say of dᵀx: +inf but along one of them.
+  double limit_of(const Vector& d) const;
+  /// Do the exact states keep to them?
+  void keep_to_inequalities(const Polytope& F, const Successors& successors);
   void within(const rational::RationalVector& normal, const rational::Rational& h,
               const Successors& successors);
   bool reported_empty() const { return step_.consistent == Answer::no; }
 
   const RecordedStep& step_;
   const RecordedSet& row_;
+  View view_;                   ///< of the set, with what its inequalities say
   bool nominal_;                ///< operations were rounded to nearest
   bool few_digits_ = false;     ///< of the directions of lines
   double line_tolerance_;       ///< of the directions of lines

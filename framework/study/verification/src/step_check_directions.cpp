@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks of a step along directions: beside the successors of the set before, which need no
 // vertices.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -88,6 +89,10 @@ void StepCheck::against(const Successors& of_the_set_before, const Matrix& direc
     if (stop && stop->load()) return;
     along(directions.col(j), by);
   }
+  for (Index i = 0; i < row_.rows.rows() && !violation_ && !reported_empty(); ++i) {
+    if (stop && stop->load()) return;
+    along(row_.rows.H.row(i), by);
+  }
   exact_stays_ = claims && !violation_;
 }
 
@@ -99,8 +104,9 @@ void StepCheck::along(const Vector& d, Along& by) {
   const double hull = !coordinate ? infinity
                       : d[i] > 0  ? d[i] * step_.hull.upper[i]
                                   : d[i] * step_.hull.lower[i];
-  const double set = reported_empty() ? -infinity : support(row_.set, d);
-  double reached = reported_empty() ? -infinity : lower_support(row_.set, d);
+  const double limit = limit_of(d);
+  const double set = reported_empty() ? -infinity : std::min(limit, support(row_.set, d));
+  double reached = reported_empty() ? -infinity : std::min(limit, lower_support(row_.set, d));
   const auto settled = [&](const Bound& bound) {
     return bound.shown && bound.value + share_of_proof * slack <= std::min(hull, reached) + slack;
   };
@@ -108,7 +114,7 @@ void StepCheck::along(const Vector& d, Along& by) {
     const Bound bound(*by.enclosed, d, slack);
     const bool in_hull = bound.shown && bound.value + share_of_proof * slack <= hull + slack;
     if (in_hull && !settled(bound) && !reported_empty())
-      reached = std::max(reached, least_support(row_.set, d));
+      reached = std::max(reached, std::min(limit, least_support(row_.set, d)));
     if (settled(bound) && !(by.claims && reached > bound.value + slack)) return;
   }
   const Bound bound(by.successors, d, slack);
@@ -148,7 +154,7 @@ void StepCheck::along(const Vector& d, Along& by) {
       }
       if (exact.upper <= std::min(hull, reached) + slack) return;
       if (!reported_empty() &&
-          exact.upper <= std::min(hull, exact::support(row_.set, d).lower) + slack)
+          exact.upper <= std::min({hull, limit, exact::support(row_.set, d).lower}) + slack)
         return;
     }
   } catch (const Error& error) {

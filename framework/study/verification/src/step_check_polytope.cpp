@@ -278,6 +278,7 @@ void StepCheck::against(const Polytope& F, const Successors& successors) {
   for (Index j = 0; j < g.rays.cols() && !violation_; ++j) contains_direction(g.rays.col(j), false);
   for (Index j = 0; j < g.lines.cols() && !violation_; ++j)
     contains_direction(g.lines.col(j), true);
+  keep_to_inequalities(F, successors);
   if (violation_ || step_.tightness != Tightness::exact || reported_empty()) return;
   const std::int64_t before = undecided_;
   if (F.is_empty()) {

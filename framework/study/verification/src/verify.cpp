@@ -348,7 +348,9 @@ class Verification {
       } else if (!follows) {
         check.skipped("the step does not follow the one before: its successors are not checked");
       } else {
-        check_in_directions(check, row.k, estimation.follows_its_sets, successors_in);
+        // successors of a form that only holds the set are more than those of the set
+        const bool all = estimation.follows_its_sets && (!row_before || row_before->exact_exchange);
+        check_in_directions(check, row.k, all, successors_in);
         ++found.by_supports;
       }
     }

@@ -39,6 +39,8 @@ LineForm make_zonotope(VectorIn c, MatrixIn G);  ///< {c + Gξ : ‖ξ‖∞ ≤
 /// Interval vector; a coordinate is bounded or free. Half-bounded or NaN bounds throw; an empty box
 /// gives ∅. Centre and radius are rounded so that the box is enclosed.
 LineForm make_box(const Box& box);
+/// Does that form have exactly the bounds of the box, with nothing rounded?
+bool is_exact_form_of(const Box& box);
 LineForm make_strip(VectorIn rho, double d, double sigma);  ///< {x : |ρᵀx - d| ≤ σ}
 
 /// T X + t; exact. T is m×n, t has size m. [Rego2025, (6)]

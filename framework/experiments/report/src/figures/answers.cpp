@@ -12,11 +12,11 @@ namespace {
 using json::Cursor;
 using Kind = json::Value::Kind;
 
-/// "proven / unknown", or a dash.
+/// "decided / unknown", or a dash.
 Table::Cell answers(const std::optional<Cursor>& all, const char* kind) {
   const auto counts = all ? object_of(*all, kind) : std::nullopt;
   if (!counts) return {"–", false, 0, true};
-  return {fmt::format("{} / {}", shown(value_of(*counts, "proven"), 15),
+  return {fmt::format("{} / {}", shown(value_of(*counts, "decided"), 15),
                       shown(value_of(*counts, "unknown"), 15)),
           false, 0, true};
 }
@@ -208,11 +208,12 @@ void add_failures(const RunFiles& files, Report& report) {
     }
     if (const double k = value_of(*summary, "inconsistent_from"); !std::isnan(k)) {
       const double until = value_of(*summary, "assumptions_until");
+      const auto proof = summary->find("inconsistent_proven");
+      const bool is_proven = proof && proof->is(Kind::boolean) && proof->value().flag;
       report.notes.push_back(fmt::format(
-          "The estimate of \"{}\" is proven empty from {} on: model, bounds, assumptions and "
-          "data contradict "
-          "each other{}.",
-          name, time_of(files, k),
+          "The estimate of \"{}\" is {} empty from {} on: model, bounds, assumptions and data "
+          "contradict each other{}.",
+          name, is_proven ? "proven" : "said to be", time_of(files, k),
           std::isnan(until)
               ? ""
               : "; the true state has left what is assumed at " + time_of(files, until)));

@@ -11,6 +11,7 @@
 #include "cordon/core/rounding.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "figures/plane_points.hpp"
 
 namespace cordon::report {
 
@@ -21,13 +22,6 @@ using Point = PlanePoint;
 constexpr double parallel = 1e-13;  ///< sine of the angle between generators that count as one
 constexpr double display_precision = 1e-7;  ///< of the set's size
 constexpr double same_vertex = 1e-10;       ///< of the set's size: vertices that count as one
-
-Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y}; }
-Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y}; }
-Point operator*(double s, Point a) { return {s * a.x, s * a.y}; }
-double dot(Point a, Point b) { return a.x * b.x + a.y * b.y; }
-double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
-double length(Point a) { return std::hypot(a.x, a.y); }
 
 /// Where a line through p along d meets one through q along e.
 Point meeting(Point p, Point d, Point q, Point e) {
@@ -118,28 +112,6 @@ PlaneSet zonotope(const LineForm& X, std::size_t limit) {
   std::vector<Point> vertices = half;
   for (const Point& p : half) vertices.push_back(-1.0 * p);
   return bounded(distinct(vertices, 1e-12), scaling, limit);
-}
-
-/// {dᵀx ≤ h} of a polygon with flags per edge; the new edge has the flag `open`.
-void cut_with(std::vector<Point>& points, std::vector<bool>& flags, Point d, double h, bool open) {
-  std::vector<Point> kept;
-  std::vector<bool> kept_flags;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Point p = points[i], q = points[(i + 1) % points.size()];
-    const double at_p = dot(d, p) - h, at_q = dot(d, q) - h;
-    if (at_p <= 0) {
-      kept.push_back(p);
-      kept_flags.push_back(flags[i]);
-    }
-    if ((at_p < 0 && at_q > 0) || (at_p > 0 && at_q < 0)) {
-      kept.push_back(p + (at_p / (at_p - at_q)) * (q - p));
-      kept_flags.push_back(at_p < 0 ? open : flags[i]);
-    } else if (at_p == 0 && at_q > 0) {
-      kept_flags.back() = open;
-    }
-  }
-  points = std::move(kept);
-  flags = std::move(kept_flags);
 }
 
 /// Between an inner polygon of points of the set and an outer one of its supporting lines.

@@ -11,6 +11,7 @@
 #include "experiments/report/plane_set.hpp"
 #include "figures/figures.hpp"
 #include "study/results/recorded_run.hpp"
+#include "study/results/recorded_view.hpp"
 
 namespace cordon::report {
 
@@ -26,17 +27,6 @@ constexpr double much_larger = 20;
 constexpr double margin = 0.08;
 
 using Pair = std::pair<Index, Index>;
-
-/// All pairs up to four states, beyond that three.
-std::vector<Pair> pairs_of(std::size_t states) {
-  std::vector<Pair> pairs;
-  const auto n = static_cast<Index>(states);
-  if (n > 4) return {{0, 1}, {2, 3}, {n > 5 ? 4 : 3, n > 5 ? 5 : 4}};
-  for (Index i = 0; i < n; ++i) {
-    for (Index j = i + 1; j < n; ++j) pairs.emplace_back(i, j);
-  }
-  return pairs;
-}
 
 /// Evenly from the first to the last, and those at which something happens.
 std::set<std::int64_t> times_of(const Curves& curves, std::size_t count) {
@@ -185,7 +175,7 @@ SetFrame frame_of(std::int64_t k, const Drawn& drawn) {
 class Projector {
  public:
   Projector(const RunFiles& files, const Curves& curves)
-      : files_(files), pairs_(pairs_of(curves.all_states)) {
+      : files_(files), pairs_(detail::drawn_planes(static_cast<Index>(curves.all_states))) {
     const auto observers = static_cast<std::size_t>(
         std::count_if(curves.pipelines.begin(), curves.pipelines.end(),
                       [](const StepCurves& steps) { return steps.first >= 0; }));
@@ -235,7 +225,7 @@ class Projector {
     if (outer_)
       caption +=
           " Of some sets an enclosure is drawn, since their representation has no exact exchange "
-          "form.";
+          "form: a polygon that touches them in sixteen directions.";
     if (any_empty())
       caption +=
           " At some times pipelines are missing: their sets are proven empty, which is said below.";
@@ -288,7 +278,7 @@ class Projector {
     std::vector<Drawn>& pictures = drawn(row.k);
     for (std::size_t q = 0; q < pairs_.size(); ++q) {
       try {
-        PlaneSet set = project(row.set, pairs_[q].first, pairs_[q].second, limits);
+        PlaneSet set = project({row.set, row.rows}, pairs_[q].first, pairs_[q].second, limits);
         if (is_drawn(set)) {
           pictures[q].sets.emplace_back(pipeline, std::move(set));
         } else {

@@ -17,7 +17,7 @@ struct BackendInfo {
   std::string name;            ///< component name, e.g. "zonotope"
   bool unbounded = false;      ///< represents Rⁿ and other sets with lines exactly
   bool intersections = false;  ///< X ∩_R Y of representable sets is exact
-  bool exact_exchange = true;  ///< line_form() equals the set
+  bool exact_exchange = true;  ///< line_form() equals the set, for all sets that say nothing else
   Rounding rounding = Rounding::nominal;
   std::string summary, citation;
 };
@@ -63,6 +63,7 @@ class SetBackend : public std::enable_shared_from_this<SetBackend> {
   /// cannot enclose X at all (an unbounded set in a bounded representation). `claim` is the claim
   /// of X itself.
   Enclosure import(const LineForm& X, Tightness claim = Tightness::exact) const;
+  Enclosure import(const View& X) const;       ///< with inequalities; the view's own claim
   Enclosure import(const Enclosure& X) const;  ///< X itself if it is of this backend already
   Enclosure box(const Box& box) const;
   Enclosure point(VectorIn x) const;
@@ -94,6 +95,10 @@ class SetBackend : public std::enable_shared_from_this<SetBackend> {
     Tightness tightness = Tightness::exact;
   };
 
+  /// Default: inequalities become constraints with slack factors as far as the form bounds them
+  /// (solvers/view_questions.hpp), and the others are left out.
+  virtual Made do_import_view(const View& X) const;
+
  private:
   virtual Made do_import(const LineForm& X) const = 0;
   // Defaults: the exact block matrices of core/line_form.hpp on the exchange forms, then one
@@ -103,6 +108,8 @@ class SetBackend : public std::enable_shared_from_this<SetBackend> {
   virtual Made do_interval_map(const Set& X, const IntervalMatrix& A) const;
   virtual Made do_intersection(const Set& X, MatrixIn R, const Set& Y) const;
   virtual Made do_convex_hull(const Set& X, const Set& Y) const;
+  /// X × Y. Default: no set, and `predict` with the blocks of the identity is asked.
+  virtual Made do_product(const Set& X, const Set& Y) const;
   /// Default: leaves X as it is (no set: "nothing to do").
   virtual Made do_reduce(const Set& X, Budget budget) const;
 

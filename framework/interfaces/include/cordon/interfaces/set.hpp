@@ -5,11 +5,14 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "cordon/core/answer.hpp"
 #include "cordon/core/box.hpp"
 #include "cordon/core/line_form.hpp"
+#include "cordon/core/view.hpp"
 
 namespace cordon {
 
@@ -30,9 +33,18 @@ struct Enclosure {
   const Set* operator->() const { return set.get(); }
 };
 
-/// Size of a representation.
+/// Size of a representation: the numbers that budgets limit, and further ones under names of its
+/// own, in snake_case: {{"facets", 12}, {"vertices", 8}}.
 struct Complexity {
+  struct Named {
+    std::string name;
+    Index count = 0;
+  };
   Index generators = 0, lines = 0, constraints = 0;
+  std::vector<Named> others = {};
+
+  /// The number of that name, one of the first three included; 0 for a name that it does not have.
+  Index count(std::string_view name) const;
 };
 
 /// Volume of a set, or an upper bound of it.
@@ -46,7 +58,9 @@ struct Volume {
 /// Public functions check dimensions and finiteness (Errc::dimension, Errc::not_finite), settle n =
 /// 0 and what follows from the answer "empty", and then call the private `do_…` function, whose
 /// preconditions are thereby met. Every `do_…` function but the first two has a default through the
-/// exchange form.
+/// view. What a representation knows better than its view (an ellipsoid its support function, a
+/// polytope whether it holds another one) it answers itself; drawing, measuring and results ask
+/// these functions.
 class Set {
  public:
   virtual ~Set() = default;
@@ -57,13 +71,19 @@ class Set {
   const SetBackend& backend() const { return *backend_; }
   Complexity complexity() const { return do_complexity(); }
 
-  /// The set in the common form: equal to it if the backend's `exact_exchange` holds, else
-  /// enclosing it.
+  /// A set in exchange form that holds this one; equal to it if `has_exact_form()`.
   LineForm line_form() const;
+  bool has_exact_form() const { return do_has_exact_form(); }
+  /// The set as others compute with it.
+  View view() const;
+  /// The view with an inequality dᵀx ≤ h(d) for every column d of `directions` (n×r) whose support
+  /// value is finite: what is known of a set that has no exact form.
+  View view_along(MatrixIn directions) const;
 
-  /// Three-valued questions. Through an outer exchange form only `is_empty: yes`, `contains: no`,
+  /// Three-valued questions. A view that is outer gives `is_empty: yes`, `contains: no`,
   /// `is_disjoint_from: yes`, `is_bounded: yes` and, for an exact right-hand side, `is_subset_of:
-  /// yes` are given. `why` receives the proof.
+  /// yes` only. Where it leaves exclusion open, directions are searched in which the support values
+  /// of both sets exclude each other. `why` receives the proof.
   Answer is_empty(Certificate* why = nullptr) const;
   Answer contains(VectorIn x, Certificate* why = nullptr) const;
   Answer is_subset_of(const Set& other, Certificate* why = nullptr) const;
@@ -71,8 +91,9 @@ class Set {
   Answer is_bounded() const;
 
   /// Upper bound of h_X(d) = sup{dᵀx : x ∈ X}; +inf when unbounded or unsolved, -inf when proven
-  /// empty.
-  double support(VectorIn d, Certificate* why = nullptr) const;
+  /// empty. `at` receives a point of the set, up to rounding, in which dᵀx is largest, or a vector
+  /// of size 0 where none is known: nothing is proven by it.
+  double support(VectorIn d, Vector* at = nullptr, Certificate* why = nullptr) const;
 
   /// Smallest box around the set as far as proven: contains X in any case. An empty box only if X
   /// is proven empty. `why` receives the proofs of the bounds: two per coordinate, of the upper
@@ -86,19 +107,29 @@ class Set {
  protected:
   Set(const SetBackend& backend, Index dim) : backend_(&backend), dim_(dim) {}
 
+  /// Default: what the backend says of all its sets (`exact_exchange`).
+  virtual bool do_has_exact_form() const;
+  /// Default: the exchange form alone. For sets with half-spaces that it cannot hold.
+  virtual View do_view() const;
+  /// The point of `support`. Default: of an exact form; none for others.
+  virtual Vector do_maximizer(VectorIn d) const;
+
  private:
   virtual Complexity do_complexity() const = 0;
   virtual LineForm do_line_form() const = 0;
-  // Defaults: the certified questions of solvers/set_questions.hpp on the exchange form.
+  // Defaults: the certified questions of solvers/view_questions.hpp on the view.
   virtual Answer do_is_empty(Certificate* why) const;
   virtual Answer do_contains(VectorIn x, Certificate* why) const;
   virtual Answer do_is_bounded() const;
   virtual double do_support(VectorIn d, Certificate* why) const;
+  // Asked first, for sets of the same backend; `unknown` leaves the question to the views.
+  virtual Answer do_is_subset_of(const Set&, Certificate*) const { return Answer::unknown; }
+  virtual Answer do_is_disjoint_from(const Set&, Certificate*) const { return Answer::unknown; }
   virtual Box do_interval_hull(std::vector<Certificate>* why) const;
   /// Volume of a bounded set, or an upper bound of it; none: "not offered".
   virtual std::optional<Volume> do_volume() const { return std::nullopt; }
 
-  bool exact_exchange() const;
+  Answer is_within_form(const Set& other, const View& right, Certificate* why) const;
 
   const SetBackend* backend_;
   Index dim_;

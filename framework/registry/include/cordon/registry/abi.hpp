@@ -8,7 +8,7 @@
 
 #include "cordon/registry/headers_hash.hpp"  // generated: CORDON_HEADERS_HASH
 
-#define CORDON_ABI_VERSION 2u
+#define CORDON_ABI_VERSION 3u
 
 #define CORDON_ABI_TEXT_(x) #x
 #define CORDON_ABI_TEXT(x) CORDON_ABI_TEXT_(x)

@@ -76,10 +76,12 @@ struct DiagnoserContext {
       nullptr;  ///< never null in `check` and `create`: the registry puts itself there
 };
 
-/// What an input is designed for.
+/// What an input is designed for. Tubes of outputs are in cordon/tubes.
 struct DesignerContext {
   const ModeBank& bank;
   std::shared_ptr<const SetBackend> backend;
+  const Factory* make =
+      nullptr;  ///< never null in `check` and `create`: the registry puts itself there
 };
 
 /// What a metric measures the estimates of.

@@ -16,8 +16,8 @@ namespace cordon {
 
 /// How many questions of a kind a run has asked, by what became of them.
 struct AnswerCount {
-  std::int64_t proven = 0, unknown = 0;
-  void add(bool is_proven) { ++(is_proven ? proven : unknown); }
+  std::int64_t decided = 0, unknown = 0;
+  void add(bool is_decided) { ++(is_decided ? decided : unknown); }
 };
 
 /// Something that changed at time k: in the plant, or in what a diagnoser says of it.
@@ -204,7 +204,8 @@ struct EstimationOutcome {
   Index lag = 0;  ///< of estimates behind the samples: there is none of the last so many times
   std::int64_t consistent = 0, inconsistent = 0,
                undecided = 0;                       ///< answers to "is the estimate non-empty?"
-  std::int64_t inconsistent_from = -1;              ///< first k with an estimate proven empty
+  std::int64_t inconsistent_from = -1;              ///< first k with an estimate called empty
+  bool inconsistent_proven = false;                 ///< the host has proven it for that k
   std::optional<Contradiction> contradiction = {};  ///< of that k
   std::int64_t restarts = 0;  ///< times that the observer began anew after an empty estimate
   /// Times that it began anew from the admissible set, as no bounded set enclosed the formulas, and
@@ -213,8 +214,9 @@ struct EstimationOutcome {
   std::string why_not_enclosed = {};
   std::vector<LeftOut> left_out = {};  ///< the first 10,000 samples with outliers
   std::int64_t outliers = 0;           ///< such samples in all
-  std::int64_t outside_from = -1;  ///< first k with the truth proven outside the estimate, by more
-                                   ///< than `tolerances::reported` (1e-9)
+  std::int64_t outside_from = -1;  ///< first k with the truth outside the estimate, by more than
+                                   ///< `tolerances::reported` (1e-9), as its representation says
+  bool outside_proven = false;     ///< the host has proven it for that k
   AnswerCount emptiness;           ///< of every estimate
   AnswerCount containment;         ///< of the truth in estimates and admissible sets
   AnswerCount bounds;  ///< of interval hulls; unknown: infinite although the estimate is not proven

@@ -67,12 +67,22 @@ std::optional<LineForm> read_form(const Cursor& at, std::optional<Index> dim) {
 
 namespace {
 
+/// H and h, r×n and r: as many rows as h has entries.
+std::optional<Inequalities> read_inequalities(const Cursor& at, Index dim) {
+  const auto h_at = at.need("h", not_as_written);
+  auto h = h_at ? read_vector(*h_at) : std::nullopt;
+  if (!h) return std::nullopt;
+  auto H = read_block(at, "H", h->size(), dim);
+  if (!H) return std::nullopt;
+  return Inequalities{std::move(*H), std::move(*h)};
+}
+
 std::optional<Certificate> read_certificate(const Cursor& at) {
   if (!at.expect(Kind::object, not_as_written)) return std::nullopt;
   using Proof = Certificate::Kind;
-  const auto kind = read_word(
-      at, "kind",
-      {Proof::none, Proof::farkas, Proof::point, Proof::dual, Proof::direction, Proof::structure});
+  const auto kind = read_word(at, "kind",
+                              {Proof::none, Proof::farkas, Proof::point, Proof::dual,
+                               Proof::direction, Proof::structure, Proof::rows});
   if (!kind) return std::nullopt;
   Certificate why{*kind, Vector(0), 0};
   if (const auto data = at.find("data")) {
@@ -306,6 +316,10 @@ std::optional<RecordedSet> SetReader::next(const std::function<bool(Index)>& wan
     if (k_at) row.k = read_integer(*k_at, 0, max_integer).value_or(0);
     if (exchange) row.exact_exchange = *exchange == Tightness::exact;
     if (auto form = dim ? read_form(root, *dim) : std::nullopt) row.set = std::move(*form);
+    if (dim && root.find("H")) {
+      row.rows = read_inequalities(root, *dim).value_or(Inequalities{});
+      row.exact_exchange = false;
+    }
     if (proof) row.proof = read_certificate(*proof).value_or(Certificate{});
     if (const auto proofs = root.find("hull_proofs");
         proofs && proofs->expect(Kind::array, not_as_written)) {

@@ -76,7 +76,7 @@ std::vector<Measure> list_of_own() {
       {.name = "wall_s", .title = "time [s]", .better = less}};
   for (const char* name :
        {"steps", "consistent", "inconsistent_from", "assumptions_until", "outside_from",
-        "violated_at", "answers_proven", "inner_outside", "runs", "segments", "outside_the_bank",
+        "violated_at", "answers_decided", "inner_outside", "runs", "segments", "outside_the_bank",
         "unknown_fault", "fault_bounds", "lower_bound", "refuted_claims", "nodes", "experiments"})
     all.push_back(in_files(name));
   for (const char* name : {"answers_unknown", "false_alarms", "missed", "detection_delay_min",

@@ -69,8 +69,8 @@ void add_estimation(Numbers& numbers, const PipelineOutcome& outcome) {
   numbers.time("assumptions_until", outcome.assumptions_until);
   numbers.time("outside_from", found.outside_from);
   numbers.time("violated_at", outcome.violated_at);
-  numbers.count("answers_proven",
-                found.emptiness.proven + found.containment.proven + found.bounds.proven);
+  numbers.count("answers_decided",
+                found.emptiness.decided + found.containment.decided + found.bounds.decided);
   numbers.count("answers_unknown",
                 found.emptiness.unknown + found.containment.unknown + found.bounds.unknown);
   numbers.add("inner_share", found.inner_steps > 0 ? found.inner_share : not_available);

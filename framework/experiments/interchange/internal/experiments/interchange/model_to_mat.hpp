@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "cordon/core/view.hpp"
 #include "cordon/study/data.hpp"
 #include "experiments/interchange/mat_value.hpp"
 
@@ -13,6 +14,8 @@ namespace cordon::mat {
 /// type, c, G, A, b, M, S; of a box lower and upper besides, from which `make_box` makes the same
 /// set.
 Value to_mat(const LineForm& X);
+/// With `H` and `h` where there are inequalities.
+Value to_mat(const LineForm& X, const Inequalities& rows);
 /// The box that `make_box` makes this form of, if there is one whose bounds are exactly those of
 /// the set.
 std::optional<Box> as_box(const LineForm& X);

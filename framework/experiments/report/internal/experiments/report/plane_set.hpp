@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "cordon/core/line_form.hpp"
+#include "cordon/core/view.hpp"
 #include "experiments/report/figure.hpp"
 
 namespace cordon::report {
@@ -40,6 +40,9 @@ struct PlaneLimits {
 /// is left open, and vertices beyond the limit, make the polygon larger, never smaller. Recession
 /// cones of exchange forms are subspaces, so that there are no other kinds.
 PlaneSet project(const LineForm& X, Index i, Index j, const PlaneLimits& limits = {});
+/// The same, cut by those inequalities that are about these two coordinates alone; where the form
+/// is unbounded, by all as constraints.
+PlaneSet project(const View& X, Index i, Index j, const PlaneLimits& limits = {});
 
 /// Joins edges where that adds least area, until there are `limit` ≥ 4 vertices at most: the result
 /// contains the polygon.

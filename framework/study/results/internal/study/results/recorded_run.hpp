@@ -106,8 +106,9 @@ struct RecordedSet {
   Index k = 0;
   Tightness tightness = Tightness::outer;  ///< like `consistent`, as in the step
   Answer consistent = Answer::unknown;
-  bool exact_exchange = true;
+  bool exact_exchange = true;  ///< `set` is the reported set, without inequalities
   LineForm set;
+  Inequalities rows;  ///< that hold for the reported set
   Certificate proof;
   std::vector<Certificate> hull_proofs;  ///< two per coordinate; none for an empty set
   std::int64_t line = 0;

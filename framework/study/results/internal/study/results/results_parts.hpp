@@ -21,6 +21,8 @@ std::string csv_time(std::int64_t k);  ///< a time index that may not exist: neg
 std::string joined(const std::vector<std::string>& fields);  ///< one row with its line end
 
 void write_time(JsonWriter& json, std::string_view name, std::int64_t k);  ///< negative: null
+/// "NAME_from", and where it has happened "NAME_proven": has the host proven it?
+void write_claim(JsonWriter& json, const std::string& name, std::int64_t from, bool proven);
 void write_blocks(JsonWriter& json,
                   const LineForm& X);  ///< the members of an exchange form, inside an open object
 void write_box(JsonWriter& json, std::string_view key, const Box& box);  ///< {lower, upper}

@@ -10,7 +10,7 @@
 #include "cordon/interfaces/model.hpp"
 #include "cordon/linearisation/along_trajectories.hpp"
 
-namespace cordon::designers {
+namespace cordon {
 
 /// Which outputs over which horizon.
 struct TubeSpan {
@@ -51,7 +51,7 @@ struct OutputTube {
 OutputTube output_tube(const TimedModel& model, const SetBackend& backend, const TubeSpan& span);
 
 /// What rounding in the elimination of lines may have changed in a row, as a share of its terms.
-inline constexpr double row_noise = 2e-13;
+inline constexpr double tube_row_noise = 2e-13;
 
 /// The same set with the lines eliminated that constraints determine, as far as that is exact: no S
 /// is left, and Ω u stands in those rows only that no line appears in. Every u leaves the tube
@@ -70,4 +70,4 @@ struct TubeConditions {
 };
 TubeConditions conditions_of(const OutputTube& tube);
 
-}  // namespace cordon::designers
+}  // namespace cordon

@@ -6,7 +6,7 @@
 
 #include "cordon/core/line_elimination.hpp"
 
-namespace cordon::designers {
+namespace cordon {
 
 /// Sizes of S δ in rows S δ + A ξ + U u = b whose lines were eliminated, as far as rows were solved
 /// for them: what an elimination rounds in coefficients of lines is multiplied by these. The
@@ -25,12 +25,13 @@ struct LinesReached {
 };
 
 /// Does Sδ + Aξ = b, the constraints of `rows`, have no solution with ‖ξ‖∞ ≤ 1 for any b within
-/// `row_noise` of `terms`, by the multipliers y that were led back over the lines? An elimination
-/// in doubles drops entries of lines that cancel up to rounding; what they multiply may be as
-/// large as it likes. Tells by rational arithmetic where that is affordable. Else with Sᵀy = r ≠ 0
-/// by rounding, for lines of the length that the solved rows give them:
+/// `tube_row_noise` of `terms`, by the multipliers y that were led back over the lines? An
+/// elimination in doubles drops entries of lines that cancel up to rounding; what they multiply may
+/// be as large as it likes. Tells by rational arithmetic where that is affordable. Else with Sᵀy =
+/// r ≠ 0 by rounding, for lines of the length that the solved rows give them:
 ///   bᵀy - ‖Aᵀy‖₁ > 2 |r|ᵀ reach.
 /// False in doubt. O(m (l + g)), and what `is_quickly_proven_empty` allows.
-bool stands(const LineForm& rows, const Vector& terms, const Vector& y, const LinesReached& lines);
+bool proves_empty_through_lines(const LineForm& rows, const Vector& terms, const Vector& y,
+                                const LinesReached& lines);
 
-}  // namespace cordon::designers
+}  // namespace cordon

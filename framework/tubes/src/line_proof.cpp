@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tubes/line_proof.hpp"
+#include "cordon/tubes/line_proof.hpp"
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/certificate.hpp"
-#include "tubes/output_tube.hpp"
+#include "cordon/tubes/output_tube.hpp"
 
-namespace cordon::designers {
+namespace cordon {
 
 TermsOfLines::TermsOfLines(MatrixIn S, const LinesEliminated& rest, Index inputs) {
   const Matrix size = S.cwiseAbs(), by = rest.lines_by_factors.cwiseAbs();
@@ -17,9 +17,10 @@ TermsOfLines::TermsOfLines(MatrixIn S, const LinesEliminated& rest, Index inputs
   input_terms = linalg::product(size, by.rightCols(inputs));
 }
 
-bool stands(const LineForm& rows, const Vector& terms, const Vector& y, const LinesReached& lines) {
+bool proves_empty_through_lines(const LineForm& rows, const Vector& terms, const Vector& y,
+                                const LinesReached& lines) {
   if (y.size() != rows.constraints() || !y.allFinite()) return false;
-  const double margin = farkas_margin(rows.A, rows.b, y, row_noise * terms);
+  const double margin = farkas_margin(rows.A, rows.b, y, tube_row_noise * terms);
   if (!(margin > 0)) return false;
   if (is_quickly_proven_empty(rows))
     return proves_empty(rows, {Certificate::Kind::farkas, y, margin});
@@ -31,4 +32,4 @@ bool stands(const LineForm& rows, const Vector& terms, const Vector& y, const Li
   return margin > 2 * open.dot(lines.reach);
 }
 
-}  // namespace cordon::designers
+}  // namespace cordon

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "cordon/interfaces/input_designer.hpp"
-#include "tubes/output_tube.hpp"
+#include "cordon/tubes/output_tube.hpp"
 
-namespace cordon::designers {
+namespace cordon {
 
 /// The rows of a pair before its lines were eliminated, and what leads back to them.
 struct PairRows;
@@ -45,4 +45,4 @@ std::vector<PairProgram> pair_programs(const std::vector<OutputTube>& tubes);
 /// without rows, NaN if the solver gave nothing.
 PairSeparation separation(const PairProgram& pair, VectorIn u);
 
-}  // namespace cordon::designers
+}  // namespace cordon

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tubes/output_tube.hpp"
+#include "cordon/tubes/output_tube.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
 #include "cordon/interfaces/descriptor_matrix.hpp"
-#include "tubes/line_proof.hpp"
+#include "cordon/tubes/line_proof.hpp"
 
-namespace cordon::designers {
+namespace cordon {
 
 namespace {
 
@@ -127,7 +127,7 @@ class TubeBuilder {
   /// As the backend writes the set, if that is the set.
   static LineForm imported(const SetBackend& backend, const LineForm& X) {
     const Enclosure set = backend.import(X);
-    const bool is_same = set.tightness == Tightness::exact && backend.info().exact_exchange;
+    const bool is_same = set.tightness == Tightness::exact && set->has_exact_form();
     return is_same ? set->line_form() : X;
   }
 
@@ -261,4 +261,4 @@ TubeConditions conditions_of(const OutputTube& tube) {
           rest.follow && tube.is_exact ? 0 : rest.vanished};
 }
 
-}  // namespace cordon::designers
+}  // namespace cordon

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tubes/separation.hpp"
+#include "cordon/tubes/separation.hpp"
 
 #include <cmath>
 #include <limits>
@@ -9,9 +9,9 @@
 #include "cordon/core/rounding.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/lp.hpp"
-#include "tubes/line_proof.hpp"
+#include "cordon/tubes/line_proof.hpp"
 
-namespace cordon::designers {
+namespace cordon {
 
 /// S δ + A ξ + U u = b.
 struct PairRows {
@@ -96,8 +96,8 @@ bool stands(const PairProgram& pair, VectorIn u, const Vector& multipliers) {
   const Vector offset = rest.lines_offset + linalg::product(by.rightCols(U.cols()), u);
   const LinesReached reached{offset.cwiseAbs() + by.leftCols(factors).cwiseAbs().rowwise().sum(),
                              rest.free_lines};
-  return stands(rows, terms + linalg::product(input_terms, u.cwiseAbs()),
-                linalg::transposed_product(rest.rows, multipliers), reached);
+  return proves_empty_through_lines(rows, terms + linalg::product(input_terms, u.cwiseAbs()),
+                                    linalg::transposed_product(rest.rows, multipliers), reached);
 }
 
 }  // namespace
@@ -172,7 +172,7 @@ PairSeparation separation(const PairProgram& pair, VectorIn u) {
     return result;
   }
   const Vector d = linalg::product(pair.N, u) - pair.c;
-  const Vector terms = pair.terms(u.cwiseAbs()), error = row_noise * terms;
+  const Vector terms = pair.terms(u.cwiseAbs()), error = tube_row_noise * terms;
   result.disjoint = BoxedProgram(pair.G, d, {terms, error}).is_empty(&result.why);
   if (result.disjoint == Answer::no && pair.vanished > 0) {
     result.disjoint = Answer::unknown;
@@ -203,4 +203,4 @@ PairSeparation separation(const PairProgram& pair, VectorIn u) {
   return result;
 }
 
-}  // namespace cordon::designers
+}  // namespace cordon
