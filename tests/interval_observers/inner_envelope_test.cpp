@@ -265,7 +265,7 @@ TEST_CASE("an inner estimate is offered of sets that are known exactly only") {
     rounded->step(first);
     CHECK(rounded->inner_estimate().has_value());
     rounded->start(outward->box(
-        {Vector::Constant(3, .1), Vector::Constant(3, .7)}));  // whose exchange form encloses it
+        {Vector::Constant(3, .1), Vector::Constant(3, .3)}));  // whose exchange form encloses it
     rounded->step(first);
     CHECK_FALSE(rounded->inner_estimate().has_value());
 

@@ -251,8 +251,9 @@ TEST_CASE("failures are told first") {
 
 TEST_CASE("what the host has not proven is not called proven") {
   const ResultsFiles files;
-  files.replace("results.json", R"("steps": [{"k": 0}]})",
-                R"("steps": [], "summary": {"inconsistent_from": 26, "inconsistent_proven": false}})");
+  files.replace(
+      "results.json", R"("steps": [{"k": 0}]})",
+      R"("steps": [], "summary": {"inconsistent_from": 26, "inconsistent_proven": false}})");
   const std::vector<std::string> notes = read_report(files.path()).notes;
   REQUIRE(notes.size() == 1);
   CHECK(notes[0].find("said to be empty from k = 26") != std::string::npos);

@@ -82,6 +82,7 @@ struct LawEntry {
 using LawList = std::vector<LawEntry>;
 void add_soundness(LawList& list);
 void add_measurements(LawList& list);
+void add_views(LawList& list);
 void add_tightness(LawList& list);
 void add_empty_set(LawList& list);
 void add_algebra(LawList& list);

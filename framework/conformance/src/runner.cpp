@@ -148,6 +148,7 @@ const LawList& law_list() {
     add_lifetime(all);  // first: afterwards a library may be pinned by what other laws made it do
     add_soundness(all);
     add_measurements(all);
+    add_views(all);
     add_tightness(all);
     add_empty_set(all);
     add_algebra(all);

@@ -54,6 +54,20 @@ LinearProgram program_of(const View& X, bool slack) {
   return {A, b, lower, upper};
 }
 
+/// dᵀ(Mδ + Gξ), and 0 for `others` variables behind them.
+Vector objective_of(const LineForm& X, VectorIn d, Index others) {
+  Vector g = Vector::Zero(X.lines() + X.generators() + others);
+  g.head(X.lines()) = linalg::transposed_product(X.M, d);
+  g.segment(X.lines(), X.generators()) = linalg::transposed_product(X.G, d);
+  return g;
+}
+
+/// The solver takes small entries for 0, whatever their unit is.
+double size_of_objective(const Vector& g) {
+  const double size = g.size() ? g.cwiseAbs().maxCoeff() : 0;
+  return size > 0 ? size : 1;
+}
+
 /// Would rational arithmetic take more than about a second?
 bool is_in_reach(const View& X) {
   const LineForm& F = X.form;
@@ -231,11 +245,11 @@ double support(const View& X, VectorIn d, Certificate* why) {
   const double alone = support(X.form, d, why);
   if (X.rows.rows() == 0 || alone == -infinity || !is_in_reach(X)) return alone;
   LinearProgram program = program_of(X, false);
-  const LineForm& F = X.form;
-  Vector g = Vector::Zero(F.lines() + F.generators() + X.rows.rows() + 1);
-  g.head(F.lines()) = linalg::transposed_product(F.M, d);
-  g.segment(F.lines(), F.generators()) = linalg::transposed_product(F.G, d);
-  const auto solution = program.maximize(g);
+  const Vector g = objective_of(X.form, d, X.rows.rows() + 1);
+  if (!g.allFinite()) return alone;
+  const double size = size_of_objective(g);
+  auto solution = program.maximize(g / size);
+  solution.y *= size;
   if (solution.status == LinearProgram::Status::infeasible) {
     Certificate proof;
     if (is_empty(X, &proof) != Answer::yes) return alone;
@@ -276,11 +290,9 @@ Folded folded(const View& X) {
 Vector maximizer(const LineForm& X, VectorIn d) {
   require_vector({X}, d);
   LinearProgram program = program_of({X}, false);
-  Vector g = Vector::Zero(X.lines() + X.generators() + 1);
-  g.head(X.lines()) = linalg::transposed_product(X.M, d);
-  g.segment(X.lines(), X.generators()) = linalg::transposed_product(X.G, d);
+  const Vector g = objective_of(X, d, 1);
   if (!g.allFinite()) return Vector(0);
-  const auto solution = program.maximize(g);
+  const auto solution = program.maximize(g / size_of_objective(g));
   if (solution.status != LinearProgram::Status::optimal) return Vector(0);
   Vector x = X.c + linalg::product(X.M, solution.x.head(X.lines())) +
              linalg::product(X.G, solution.x.segment(X.lines(), X.generators()));
