@@ -1,11 +1,11 @@
 # cordon_add_plugin(name SOURCES file... [LIBRARIES target...] [PROVIDES "kind component"...]
-# [CONFORMANCE backend...] [DIRECTORY dir])
+# [CONFORMANCE component...] [DIRECTORY dir])
 #   A plugin: a module that exports one symbol, its descriptor. Serves Cordon itself and, after
 #   find_package(cordon), everybody else. It is built into <build>/lib/cordon/plugins-v1 and
 #   installed with `cmake --install`; with DIRECTORY it is built there and not installed.
 #   PROVIDES announces its components in a text file beside it, so that a missing or damaged library
 #   is named where one is needed.
-#   CONFORMANCE adds a test per backend that runs `cordon conform` on it (ctest -R conform).
+#   CONFORMANCE adds a test per component that runs `cordon conform` on it (ctest -R conform).
 include(GNUInstallDirs)
 set(CORDON_PLUGIN_VERSION_SCRIPT "${CMAKE_CURRENT_LIST_DIR}/plugin.map")
 if(NOT CORDON_PLUGIN_DESTINATION)
@@ -57,9 +57,9 @@ function(cordon_add_plugin_targets name)
   if(NOT arg_DIRECTORY)
     install(TARGETS ${name}_plugin DESTINATION "${CORDON_PLUGIN_DESTINATION}")
   endif()
-  foreach(backend IN LISTS arg_CONFORMANCE)
-    add_test(NAME conform_${name}_${backend} COMMAND $<TARGET_FILE:cordon::app> conform
-      "$<TARGET_FILE:${name}_plugin>" --backend ${backend})
-    set_tests_properties(conform_${name}_${backend} PROPERTIES LABELS conformance)
+  foreach(component IN LISTS arg_CONFORMANCE)
+    add_test(NAME conform_${name}_${component} COMMAND $<TARGET_FILE:cordon::app> conform
+      "$<TARGET_FILE:${name}_plugin>" --component ${component})
+    set_tests_properties(conform_${name}_${component} PROPERTIES LABELS conformance)
   endforeach()
 endfunction()

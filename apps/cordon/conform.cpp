@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cordon conform: the laws of the conformance kit, checked on a plugin's backends.
+// cordon conform: the laws of the conformance kit, checked on a plugin's components.
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -23,14 +24,15 @@ using State = LawReport::State;
 namespace fs = std::filesystem;
 
 struct ConformArguments {
-  std::string plugin, backend, params = "{}", laws = "*";
+  std::string plugin, laws = "*";
+  Wanted wanted;
   std::uint64_t seed = 1;
-  Index cases = 300;
+  Index cases = conformance::Options{}.cases;
   double timeout_s = 20;
   bool json = false, list = false, in_process = false;
 };
 
-/// The outcome for one backend with one set of parameters.
+/// The outcome for one component with one set of parameters.
 struct Conformed {
   Candidate candidate;
   std::vector<LawReport> laws;
@@ -69,13 +71,15 @@ std::string replay_command(const Program& program, const ConformArguments& argum
   std::string text = "cordon";
   for (const fs::path& directory : program.plugins)
     text += " --plugins " + quoted(directory.string());
-  text += " conform " + quoted(arguments.plugin) + " --backend " + candidate.backend;
+  text += " conform " + quoted(arguments.plugin) + " --kind " + candidate.kind + " --component " +
+          candidate.component;
   if (candidate.params != "{}") text += " --params " + quoted(candidate.params);
   return text;
 }
 
 std::string title_of(const Candidate& candidate) {
-  return candidate.params == "{}" ? candidate.backend : candidate.backend + " " + candidate.params;
+  const std::string name = candidate.kind + " " + candidate.component;
+  return candidate.params == "{}" ? name : name + " " + candidate.params;
 }
 
 std::string note_of(const LawReport& report) {
@@ -110,7 +114,7 @@ bool is_violation(const LawReport& report) {
 
 std::string as_text(const Conformed& c, const std::string& plugin) {
   const Paint paint(stdout);
-  std::string text = paint.bold("backend " + title_of(c.candidate)) + " (plugin " + plugin + ")\n";
+  std::string text = paint.bold(title_of(c.candidate)) + " (plugin " + plugin + ")\n";
   if (!c.problem.empty()) return text + "no law was checked: " + c.problem + "\n";
   std::vector<std::vector<std::string>> rows{{"LAW", "CASES", "RESULT", "NOTE"}};
   for (const LawReport& report : c.laws) {
@@ -148,7 +152,8 @@ std::string as_text(const Conformed& c, const std::string& plugin) {
 
 Json as_json(const Conformed& c) {
   if (!c.problem.empty())
-    return {{"backend", c.candidate.backend},
+    return {{"kind", c.candidate.kind},
+            {"component", c.candidate.component},
             {"params", Json::parse(c.candidate.params)},
             {"problem", c.problem}};
   Json laws = Json::array();
@@ -167,19 +172,21 @@ Json as_json(const Conformed& c) {
     if (is_violation(report)) entry.update({{"witness", r.witness}, {"replay", r.replay}});
     laws.push_back(std::move(entry));
   }
-  return {{"backend", c.candidate.backend},
+  return {{"kind", c.candidate.kind},
+          {"component", c.candidate.component},
           {"params", Json::parse(c.candidate.params)},
           {"seconds", c.seconds},
           {"laws", laws}};
 }
 
 Exit list_laws(const ConformArguments& arguments) {
-  std::vector<std::vector<std::string>> rows{{"LAW", "STATEMENT"}};
+  std::vector<std::vector<std::string>> rows{{"LAW", "OF", "STATEMENT"}};
   Json entries = Json::array();
   for (const conformance::Law& law : conformance::laws()) {
     if (!conformance::matches(arguments.laws, law.name)) continue;
-    rows.push_back({law.name, law.statement});
-    entries.push_back({{"law", law.name}, {"statement", law.statement}});
+    if (!arguments.wanted.kind.empty() && law.kind != arguments.wanted.kind) continue;
+    rows.push_back({law.name, law.kind, law.statement});
+    entries.push_back({{"law", law.name}, {"kind", law.kind}, {"statement", law.statement}});
   }
   print(arguments.json ? json_text(Json{{"laws", entries}}) : table(rows, Paint(stdout)));
   return Exit::done;
@@ -197,35 +204,67 @@ void require_laws(const std::string& pattern) {
                           near.empty() ? std::string() : "did you mean \"" + near + "\"? "));
 }
 
+/// Those of a kind that the pattern has laws of.
+std::vector<Candidate> with_laws(std::vector<Candidate> candidates, const std::string& pattern) {
+  std::set<std::string> kinds;
+  for (const conformance::Law& law : conformance::laws()) {
+    if (conformance::matches(pattern, law.name)) kinds.insert(law.kind);
+  }
+  const std::string first = candidates.front().kind;
+  std::erase_if(candidates, [&](const Candidate& c) { return !kinds.contains(c.kind); });
+  if (candidates.empty())
+    throw Error(Errc::invalid,
+                fmt::format("no law of a {} matches \"{}\"; \"cordon conform --list\" shows all",
+                            first, pattern));
+  return candidates;
+}
+
+/// All components together.
+struct Total {
+  Index components = 0, hold = 0, violated = 0, died = 0;
+  double seconds = 0;
+
+  void add(const Conformed& c) {
+    ++components;
+    hold += c.count(State::passed);
+    violated += c.count(State::failed);
+    died += c.count(State::crashed) + c.count(State::timed_out) + (c.problem.empty() ? 0 : 1);
+    seconds += c.seconds;
+  }
+  std::string text() const {
+    return fmt::format("\n{} components: {} laws hold, {} violated, {} crashed or hung; {:.1f} s\n",
+                       components, hold, violated, died, seconds);
+  }
+};
+
 Exit conform(const Program& program, const ConformArguments& arguments) {
   if (arguments.list) return list_laws(arguments);
   if (arguments.plugin.empty())
     throw Error(Errc::invalid, "conform: PLUGIN is required; `cordon conform --help` tells more");
   require_laws(arguments.laws);
   const fs::path library = find_plugin(program, arguments.plugin);
-  const Discovery found = discover(library, arguments.backend, arguments.params);
+  const Discovery found = discover(library, arguments.wanted);
   if (!found.problem.empty()) {
     complain(found.problem);
     return found.invalid ? Exit::invalid : Exit::plugin;
   }
-  if (found.candidates.empty())
-    throw Error(Errc::invalid,
-                fmt::format("{} has no backend; there is nothing to check", library.string()));
-
+  const std::vector<Candidate> candidates = with_laws(found.candidates, arguments.laws);
   std::vector<std::string> titles;
-  for (const Candidate& candidate : found.candidates) titles.push_back(title_of(candidate));
+  for (const Candidate& candidate : candidates) titles.push_back(title_of(candidate));
   ProgressBar bar(titles, isatty(STDERR_FILENO) == 1);
   std::string text;
-  Json backends = Json::array();
+  Json components = Json::array();
   Exit exit = Exit::done;
-  for (std::size_t k = 0; k < found.candidates.size(); ++k) {
-    Conformed c{found.candidates[k], {}, 0};
+  Total total;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    Conformed c{candidates[k], {}, 0};
     c.problem = problem_of_making(library, c.candidate);
     const ConformRequest request{library,
                                  c.candidate,
                                  {arguments.laws, arguments.seed, arguments.cases},
                                  arguments.timeout_s,
-                                 replay_command(program, arguments, c.candidate)};
+                                 replay_command(program, arguments, c.candidate),
+                                 default_search_path(program.plugins)};
     const LawProgress progress = [&](std::size_t law, std::size_t laws) {
       bar.show(k, static_cast<std::int64_t>(law), static_cast<std::int64_t>(laws));
     };
@@ -238,14 +277,19 @@ Exit conform(const Program& program, const ConformArguments& arguments) {
         !c.problem.empty() || c.count(State::crashed) + c.count(State::timed_out) > 0;
     if (broken && exit == Exit::done) exit = Exit::plugin;
     text += (text.empty() ? "" : "\n") + as_text(c, found.plugin);
-    backends.push_back(as_json(c));
+    components.push_back(as_json(c));
+    total.add(c);
   }
   bar.clear();
+  if (total.components > 1) text += total.text();
   if (arguments.json) {
-    const Json report{{"plugin", found.plugin},         {"version", found.version},
-                      {"file", library.string()},       {"seed", arguments.seed},
-                      {"cases", arguments.cases},       {"conforms", exit == Exit::done},
-                      {"backends", std::move(backends)}};
+    const Json report{{"plugin", found.plugin},
+                      {"version", found.version},
+                      {"file", library.string()},
+                      {"seed", arguments.seed},
+                      {"cases", arguments.cases},
+                      {"conforms", exit == Exit::done},
+                      {"components", std::move(components)}};
     text = json_text(report);
   }
   print(text);
@@ -256,13 +300,18 @@ Exit conform(const Program& program, const ConformArguments& arguments) {
 
 CORDON_COMMAND(conform) {
   CLI::App* command = app.add_subcommand(
-      "conform", "Check a plugin's backends against the laws that every backend keeps");
+      "conform", "Check a plugin's components against the laws that every one of their kind keeps");
   const auto arguments = std::make_shared<ConformArguments>();
   command
       ->add_option("PLUGIN", arguments->plugin,
                    "File of a plugin, or the name of one on the search path")
       ->option_text(" ");
-  command->add_option("--backend", arguments->backend, "Check this backend only")
+  command
+      ->add_option("--kind", arguments->wanted.kind,
+                   "Check components of this kind only: backend, observer, ...")
+      ->option_text("KIND");
+  command
+      ->add_option("--component", arguments->wanted.component, "Check components of this name only")
       ->option_text("NAME");
   command
       ->add_option("--law", arguments->laws,
@@ -270,12 +319,12 @@ CORDON_COMMAND(conform) {
       ->option_text("GLOB");
   command->add_option("--seed", arguments->seed, "Of the random cases [1]")->option_text("N");
   command
-      ->add_option("--cases", arguments->cases, "Cases per law; expensive laws take a share [300]")
+      ->add_option("--cases", arguments->cases, "Cases per law; expensive laws take a share [100]")
       ->check(CLI::Range(Index{1}, Index{1'000'000}))
       ->option_text("N");
   command
-      ->add_option("--params", arguments->params,
-                   "Parameters of the backend, as a JSON object [{}]")
+      ->add_option("--params", arguments->wanted.params,
+                   "Parameters of the components, as a JSON object [{}]")
       ->option_text("JSON");
   command->add_option("--timeout", arguments->timeout_s, "Seconds that one case may take [20]")
       ->check(CLI::Range(0.1, 86400.0))

@@ -2,12 +2,14 @@
 // Plugins tried in a child process: what they offer, and whether a backend can be made.
 #include "conform_discovery.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "common.hpp"
-#include "conform_backend.hpp"
 #include "conform_child.hpp"
+#include "conform_component.hpp"
 
 namespace cordon::apps {
 
@@ -22,36 +24,61 @@ std::vector<std::string> roundings(const ParamSchema& schema, const Json& params
   return spec->choices;
 }
 
-void discover_in_child(int fd, const std::filesystem::path& library, const std::string& backend,
-                       const std::string& params) {
+/// The names of the kind that are wanted.
+std::vector<std::string> wanted_names(const Registry& registry, const std::string& kind,
+                                      const Wanted& wanted) {
+  if (!wanted.kind.empty() && wanted.kind != kind) return {};
+  if (wanted.component.empty()) return registry.names(kind);
+  if (!registry.info(kind, wanted.component)) return {};
+  return {wanted.component};
+}
+
+/// None is there: what there is instead.
+[[noreturn]] void refuse_wanted(const Registry& registry, const std::filesystem::path& library,
+                                const Wanted& wanted) {
+  const auto& kinds = Registry::kinds();
+  if (!wanted.kind.empty() && std::find(kinds.begin(), kinds.end(), wanted.kind) == kinds.end()) {
+    throw Error(Errc::invalid, fmt::format("there is no kind \"{}\"; {}", wanted.kind,
+                                           suggest(wanted.kind, kinds)));
+  }
+  std::vector<std::string> names;
+  for (const std::string& kind : kinds) {
+    if (!wanted.kind.empty() && kind != wanted.kind) continue;
+    for (const std::string& name : registry.names(kind)) names.push_back(name);
+  }
+  const std::string what = wanted.kind.empty() ? "component" : wanted.kind;
+  if (wanted.component.empty())
+    throw Error(Errc::invalid, fmt::format("{} has no {}", library.string(), what));
+  throw Error(Errc::invalid,
+              fmt::format("{} has no {} \"{}\"; {}", library.string(), what, wanted.component,
+                          names.empty() ? "it has none" : suggest(wanted.component, names)));
+}
+
+void discover_in_child(int fd, const std::filesystem::path& library, const Wanted& wanted) {
   try {
     Registry registry;
     load_only(registry, library);
     const PluginReport& report = registry.reports().back();
     Json message{
         {"plugin", report.name}, {"version", report.version}, {"candidates", Json::array()}};
-    std::vector<std::string> names = registry.names("backend");
-    if (!backend.empty()) {
-      if (!registry.info("backend", backend)) {
-        const std::string suggestion = names.empty() ? "it has none" : suggest(backend, names);
-        throw Error(Errc::invalid, fmt::format("{} has no backend \"{}\"; {}", library.string(),
-                                               backend, suggestion));
-      }
-      names = {backend};
-    }
-    for (const std::string& name : names) {
-      const ParamSchema& schema = registry.info("backend", name)->schema;
-      params_from(params, schema);
-      const Json given = Json::parse(params);
-      const auto choices = roundings(schema, given);
-      if (choices.empty())
-        message["candidates"].push_back({{"backend", name}, {"params", given.dump()}});
-      for (const std::string& choice : choices) {
-        Json chosen = given;
-        chosen["rounding"] = choice;
-        message["candidates"].push_back({{"backend", name}, {"params", chosen.dump()}});
+    for (const std::string& kind : Registry::kinds()) {
+      for (const std::string& name : wanted_names(registry, kind, wanted)) {
+        const ParamSchema& schema = registry.info(kind, name)->schema;
+        const bool is_backend = kind == BackendEntry::kind;
+        params_from(wanted.params, schema, is_backend);
+        const Json given = Json::parse(wanted.params);
+        const auto choices = is_backend ? roundings(schema, given) : std::vector<std::string>{};
+        Json candidate{{"kind", kind}, {"component", name}, {"params", given.dump()}};
+        if (choices.empty()) message["candidates"].push_back(candidate);
+        for (const std::string& choice : choices) {
+          Json chosen = given;
+          chosen["rounding"] = choice;
+          candidate["params"] = chosen.dump();
+          message["candidates"].push_back(candidate);
+        }
       }
     }
+    if (message["candidates"].empty()) refuse_wanted(registry, library, wanted);
     send(fd, message);
   } catch (const Error& error) {
     send(fd, {{"problem", error.what()}, {"invalid", error.code() != Errc::plugin}});
@@ -62,9 +89,8 @@ void discover_in_child(int fd, const std::filesystem::path& library, const std::
 
 }  // namespace
 
-Discovery discover(const std::filesystem::path& library, const std::string& backend,
-                   const std::string& params) {
-  Child child([&](int fd) { discover_in_child(fd, library, backend, params); });
+Discovery discover(const std::filesystem::path& library, const Wanted& wanted) {
+  Child child([&](int fd) { discover_in_child(fd, library, wanted); });
   Discovery found;
   Json message;
   switch (child.wait(60, message)) {
@@ -90,19 +116,21 @@ Discovery discover(const std::filesystem::path& library, const std::string& back
   found.plugin = message.at("plugin");
   found.version = message.at("version");
   for (const Json& entry : message.at("candidates"))
-    found.candidates.push_back({entry.at("backend"), entry.at("params")});
+    found.candidates.push_back({entry.at("kind"), entry.at("component"), entry.at("params")});
   return found;
 }
 
 std::string problem_of_making(const std::filesystem::path& library, const Candidate& candidate) {
+  if (candidate.kind != BackendEntry::kind) return "";
   Child child([&](int fd) {
     std::string problem;
     try {
       Registry registry;
       load_only(registry, library);
       registry.make<BackendEntry>(
-          candidate.backend,
-          params_from(candidate.params, registry.info("backend", candidate.backend)->schema));
+          candidate.component,
+          params_from(candidate.params, registry.info("backend", candidate.component)->schema,
+                      true));
     } catch (...) {
       problem = current_text();
     }

@@ -8,9 +8,15 @@
 
 namespace cordon::apps {
 
-/// A backend of a plugin with its parameters, as JSON text ("{}" for the defaults).
+/// A component of a plugin with its parameters, as JSON text ("{}" for the defaults).
 struct Candidate {
-  std::string backend, params = "{}";
+  std::string kind, component, params = "{}";
+};
+
+/// Which components are meant: "" stands for all.
+struct Wanted {
+  std::string kind, component;
+  std::string params = "{}";  ///< must fit each of them
 };
 
 /// What a plugin's file offers.
@@ -21,11 +27,10 @@ struct Discovery {
   std::string problem;  ///< refused, crashed or wrong parameters: why; then there are no candidates
   bool invalid = false;  ///< the problem is one of the command line
 };
-/// Loads the plugin in a child process. `backend` "" stands for all; `params` must fit each of
-/// them.
-Discovery discover(const std::filesystem::path& library, const std::string& backend,
-                   const std::string& params);
-/// Makes the backend in a child process: why no law can be checked on it; "" if nothing is wrong.
+/// Loads the plugin in a child process.
+Discovery discover(const std::filesystem::path& library, const Wanted& wanted);
+/// Makes a backend in a child process: why no law can be checked on it; "" if nothing is wrong. Of
+/// other kinds, which are made for a model, nothing is known in advance.
 std::string problem_of_making(const std::filesystem::path& library, const Candidate& candidate);
 
 }  // namespace cordon::apps

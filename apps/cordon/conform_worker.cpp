@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common.hpp"
-#include "conform_backend.hpp"
 #include "conform_child.hpp"
+#include "conform_component.hpp"
 
 namespace cordon::apps {
 
@@ -49,32 +49,56 @@ Result result_from(const Json& json) {
 
 using Tell = std::function<void(const Json& message)>;
 
+/// A backend of the library alone: a registry for each, so that between two laws nothing of the
+/// plugin is left.
+void offer_backend(const Tell& tell, const ConformRequest& request, conformance::Subject& subject) {
+  Registry registry;
+  load_only(registry, request.library);
+  const std::string& name = request.candidate.component;
+  subject.params =
+      params_from(request.candidate.params, registry.info("backend", name)->schema, true);
+  tell({{"unbounded", registry.make<BackendEntry>(name, subject.params)->info().unbounded}});
+  subject.make = [&request](const Params& params) {
+    Registry own;
+    load_only(own, request.library);
+    return own.make<BackendEntry>(request.candidate.component, params);
+  };
+}
+
+/// A component of another kind, with what there is on the search path beside it.
+void offer_component(const ConformRequest& request, conformance::Subject& subject) {
+  const auto registry = std::make_shared<Registry>();
+  load_only(*registry, request.library);
+  registry->load(request.others);
+  subject.params = params_from(
+      request.candidate.params,
+      registry->info(request.candidate.kind, request.candidate.component)->schema, false);
+  subject.registry = registry;
+}
+
 /// The laws from `first` on; results, progress and what goes wrong are told as messages.
 void check_laws(const Tell& tell, const ConformRequest& request,
                 const std::vector<std::string>& laws, std::size_t first) {
   conformance::Subject subject;
   ParamSchema schema;
-  const std::string backend = request.candidate.backend;
+  subject.kind = request.candidate.kind;
+  subject.component = request.candidate.component;
+  subject.library = request.library;
+  subject.command = request.command;
   try {
     Registry registry;
     load_only(registry, request.library);
-    schema = registry.info("backend", backend)->schema;
-    subject.params = params_from(request.candidate.params, schema);
-    tell({{"unbounded", registry.make<BackendEntry>(backend, subject.params)->info().unbounded}});
+    schema = registry.info(subject.kind, subject.component)->schema;
+    if (subject.kind == BackendEntry::kind) {
+      offer_backend(tell, request, subject);
+    } else {
+      offer_component(request, subject);
+    }
   } catch (...) {
     tell({{"broken", current_text()}});
     return;
   }
   subject.schema = &schema;
-  subject.library = request.library;
-  subject.component = backend;
-  subject.command = request.command;
-  // a registry for each: between two laws nothing of the plugin is left
-  subject.make = [&](const Params& params) {
-    Registry registry;
-    load_only(registry, request.library);
-    return registry.make<BackendEntry>(backend, params);
-  };
   const auto progress = [&](const conformance::Law&, Index number, Index) {
     tell({{"case", number}});
   };
@@ -97,7 +121,7 @@ LawReport lost(const ConformRequest& request, const std::string& law, Index numb
   r.law = law;
   r.status = conformance::Status::failed;
   if (number < 0) {
-    r.reason = how + " while the backend was made";
+    r.reason = how + " while the " + request.candidate.kind + " was made";
   } else {
     r.reason = how + fmt::format(" in case {}", number);
     r.cases = number + 1;
@@ -113,7 +137,8 @@ LawReport lost(const ConformRequest& request, const std::string& law, Index numb
 std::vector<std::string> wanted_laws(const ConformRequest& request) {
   std::vector<std::string> laws;
   for (const conformance::Law& law : conformance::laws()) {
-    if (conformance::matches(request.options.laws, law.name)) laws.push_back(law.name);
+    if (law.kind == request.candidate.kind && conformance::matches(request.options.laws, law.name))
+      laws.push_back(law.name);
   }
   return laws;
 }
@@ -221,7 +246,7 @@ std::vector<LawReport> check_in_process(const ConformRequest& request,
   Reports reports(request, progress);
   check_laws([&](const Json& message) { reports.take_in(message); }, request, reports.laws(), 0);
   while (!reports.complete())
-    reports.lose(LawReport::State::crashed, "the backend could not be made again");
+    reports.lose(LawReport::State::crashed, "the component could not be made again");
   return reports.take();
 }
 

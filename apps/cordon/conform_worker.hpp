@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs laws, in a child process unless it is told otherwise: a backend may crash or hang.
+// Runs laws, in a child process unless it is told otherwise: a component may crash or hang.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +10,7 @@
 
 #include "conform_discovery.hpp"
 #include "cordon/conformance/conformance.hpp"
+#include "cordon/registry/registry.hpp"
 
 namespace cordon::apps {
 
@@ -26,8 +27,9 @@ struct ConformRequest {
   std::filesystem::path library;
   Candidate candidate;
   conformance::Options options;
-  double timeout_s = 20;  ///< of one case
-  std::string command;    ///< of the replay line
+  double timeout_s = 20;   ///< of one case
+  std::string command;     ///< of the replay line
+  SearchPath others = {};  ///< where what components work with is found
 };
 using LawProgress = std::function<void(std::size_t law, std::size_t laws)>;
 /// Checks the laws one by one; after a crash or a hang the next law runs in a new process.

@@ -76,7 +76,8 @@ void require_free_name(const Program& program, const std::string& name) {
   }
 }
 
-std::string with_name(std::string_view text, const std::string& name) {
+std::string with_name(std::string_view text, std::string_view template_name,
+                      const std::string& name) {
   std::string result;
   for (std::size_t at = 0;;) {
     const std::size_t next = text.find(template_name, at);
@@ -143,11 +144,17 @@ std::string prefix_option(bool& installed) {
   return prefix == "/usr" || prefix == "/usr/local" ? "" : " -DCMAKE_PREFIX_PATH=" + quoted(prefix);
 }
 
-Exit new_plugin(const Program& program, const std::string& name, const fs::path& wanted) {
+struct NewPlugin {
+  std::string name, kind = "backend";
+  fs::path directory;
+};
+
+Exit new_plugin(const Program& program, const NewPlugin& wanted) {
+  const std::string& name = wanted.name;
   std::signal(SIGXFSZ,
               SIG_IGN);  // a limit of file size is an error of write, not the end of the process
   require_free_name(program, name);
-  const fs::path shown = wanted.empty() ? fs::path(name) : wanted;
+  const fs::path shown = wanted.directory.empty() ? fs::path(name) : wanted.directory;
   fs::path target = fs::absolute(shown).lexically_normal();
   if (!target.has_filename()) target = target.parent_path();  // "dir/" is "dir"
   if (std::error_code error; fs::exists(fs::symlink_status(target, error))) {
@@ -161,8 +168,9 @@ Exit new_plugin(const Program& program, const std::string& name, const fs::path&
   PartialDirectory directory(target);
   std::vector<std::string> files;
   for (const TemplateFile& file : plugin_template) {
-    files.push_back(with_name(file.path, name));
-    directory.write(files.back(), with_name(file.content, name));
+    if (file.kind != wanted.kind) continue;
+    files.push_back(with_name(file.path, file.name, name));
+    directory.write(files.back(), with_name(file.content, file.name, name));
   }
   directory.keep();
   bool installed = false;
@@ -185,19 +193,23 @@ Exit new_plugin(const Program& program, const std::string& name, const fs::path&
 CORDON_COMMAND(new) {
   CLI::App* command = app.add_subcommand("new", "Write the beginning of something of your own");
   command->require_subcommand(1);
-  CLI::App* plugin = command->add_subcommand(
-      "plugin", "Write a project that builds a plugin with a set representation");
+  CLI::App* plugin =
+      command->add_subcommand("plugin", "Write a project that builds a plugin with one component");
   plugin->fallthrough();
-  const auto name = std::make_shared<std::string>();
-  const auto directory = std::make_shared<fs::path>();
-  plugin->add_option("NAME", *name, "Name of the plugin and of its backend, in snake_case")
+  const auto wanted = std::make_shared<NewPlugin>();
+  plugin->add_option("NAME", wanted->name, "Name of the plugin and of its component, in snake_case")
       ->required();
   plugin
-      ->add_option("--dir", *directory,
+      ->add_option("--kind", wanted->kind,
+                   "What it is: backend (a set representation), observer, diagnoser, designer, "
+                   "gain, metric or plant [backend]")
+      ->check(CLI::IsMember(Registry::kinds()))
+      ->option_text("KIND");
+  plugin
+      ->add_option("--dir", wanted->directory,
                    "The directory to write, which must not exist (default: NAME)")
       ->option_text("DIR");
-  plugin->callback(
-      [&program, name, directory] { program.exit = new_plugin(program, *name, *directory); });
+  plugin->callback([&program, wanted] { program.exit = new_plugin(program, *wanted); });
   add_new_study(*command, program);
 }
 

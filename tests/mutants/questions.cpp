@@ -177,6 +177,30 @@ class EmptyHullIsPoint final : public LineSet {
   }
 };
 
+/// Two sets, and nothing between them.
+class UnionSet final : public LineSet {
+ public:
+  UnionSet(const SetBackend& backend, LineForm hull, LineForm X, LineForm Y)
+      : LineSet(backend, std::move(hull)), X_(std::move(X)), Y_(std::move(Y)) {}
+
+ private:
+  Answer do_contains(VectorIn x, Certificate*) const override {
+    const Answer one = cordon::contains(X_, x), two = cordon::contains(Y_, x);
+    if (one == Answer::yes || two == Answer::yes) return Answer::yes;
+    return one == Answer::no && two == Answer::no ? Answer::no : Answer::unknown;
+  }
+  LineForm X_, Y_;
+};
+
+class Unions final : public Reference {
+  using Reference::Reference;
+  Made do_convex_hull(const Set& X, const Set& Y) const override {
+    return {
+        std::make_unique<UnionSet>(*this, cordon::convex_hull(form(X), form(Y)), form(X), form(Y)),
+        Tightness::outer};
+  }
+};
+
 }  // namespace
 
 std::vector<Mutant> mutants_of_questions() {
@@ -213,6 +237,7 @@ std::vector<Mutant> mutants_of_questions() {
        create<With<AnswersSwapped>>},
       {"volume_of_hull", "soundness.volume", "the volume of the hull is called exact",
        create<With<VolumeOfHull>>},
+      {"unions", "questions.convex", "the hull of two sets is their union", create<Unions>},
       {"nan_hull", "contract.no_nan", "the hull of a flat set is not a number",
        create<With<NanHull>>},
       {"empty_hull_is_point", "questions.agree", "the hull of the empty set is the origin",

@@ -10,6 +10,7 @@
 #include "components.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/interfaces/line_form_set.hpp"
+#include "observers/nonlinear/formula_outputs.hpp"
 #include "observers/nonlinear/recursion.hpp"
 #include "observers/observer_parameters.hpp"
 
@@ -45,9 +46,7 @@ class NonlinearObserver final : public Observer {
       : Observer(context.model, context.backend),
         X0_(initial_set_from(model(), params)),
         recursion_(model(), context.backend, options_from(params, context.backend->info())),
-        outputs_(model().nonlinear->g, context.backend->info().rounding,
-                 model().nonlinear->undefined),
-        V_hull_(context.backend->import(model().V)->interval_hull()) {}
+        outputs_(model(), *context.backend) {}
 
   LineForm initial_set() const override { return X0_; }
   std::optional<LineForm> admissible_set() const override { return model().nonlinear->admissible; }
@@ -102,22 +101,13 @@ class NonlinearObserver final : public Observer {
   }
 
   OutputBounds output_bounds(const Set& X, Index output, const Sample& now) override {
-    const Box hull = X.interval_hull();
-    std::vector<Interval> variables;
-    for (const Box* box : std::initializer_list<const Box*>{&hull, &V_hull_})
-      for (Index i = 0; i < box->dim(); ++i) variables.push_back({box->lower[i], box->upper[i]});
-    for (const double known : now.u) variables.push_back({known, known});
-    variables.push_back({static_cast<double>(now.k), static_cast<double>(now.k)});
-    outputs_.evaluate(variables);
-    const Interval bounds = outputs_.value(output);
-    outputs_.bound_rounding();
-    return {bounds.lower, bounds.upper, outputs_.rounding_error(output)};
+    const auto [bounds, error] = outputs_.bounds(X.interval_hull(), output, now);
+    return {bounds.lower, bounds.upper, error};
   }
 
   LineForm X0_;
   NonlinearRecursion recursion_;
-  formulas::Evaluator outputs_;  ///< g, and h
-  Box V_hull_;
+  FormulaOutputs outputs_;
 };
 
 /// What formulas are made of, for people.

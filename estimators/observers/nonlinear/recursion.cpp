@@ -91,6 +91,7 @@ void NonlinearRecursion::take_admissible(const LineForm& set) {
 bool NonlinearRecursion::start(Enclosure X) {
   before_.reset();
   images_.clear();
+  is_predicted_ = false;
   set(std::move(X));
   B_ = hull();
   return admit();
@@ -121,8 +122,8 @@ const Box& NonlinearRecursion::hull() const {
   // all times.
   for (Index i = 0; i < box.dim(); ++i) {
     const double size = std::max(std::abs(box.lower[i]), std::abs(box.upper[i]));
-    const double room =
-        std::max(tolerances::proof_margin * size, rounding_doubt * f_.rounding_error(i));
+    const double of_f = is_predicted_ ? rounding_doubt * f_.rounding_error(i) : 0;
+    const double room = std::max(tolerances::proof_margin * size, of_f);
     box.lower[i] -= room;
     box.upper[i] += room;
   }
@@ -236,6 +237,7 @@ bool NonlinearRecursion::predict(VectorIn u, Index k) {
     throw Error(Errc::not_enclosed, "the estimate at k = " + std::to_string(k) +
                                         " is unbounded, and formulas are enclosed over boxes");
   Box range = predicted_range(u, k);
+  is_predicted_ = true;
   if (options_.boxes_only) {
     hull_ = B_ = range;  // the set follows with the correction
     return admit();

@@ -127,6 +127,7 @@ class NonlinearRecursion {
       admissible_;  ///< the last one: none, or unbounded and no set of the backend
   Box W_hull_, V_hull_, B_;
   Box admissible_hull_, admissible_sides_;  ///< with room for the rounding of a state; without
+  bool is_predicted_ = false;               ///< X is what f has made of the state before
   mutable std::optional<Box> hull_;         ///< of X before it was reduced, where it was asked for
   bool is_reduced_ = false;                 ///< X has been replaced by a larger set
   /// X_{k-1} where X_k is still to be made: relaxations predict and correct at once.

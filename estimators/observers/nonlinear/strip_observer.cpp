@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "components.hpp"
+#include "observers/nonlinear/formula_outputs.hpp"
 #include "observers/nonlinear/strip_recursion.hpp"
 #include "observers/observer_parameters.hpp"
 
@@ -36,7 +37,8 @@ class StripObserver final : public Observer {
         X0_(initial_set_from(model(), params)),
         variant_(variant_from(params)),
         recursion_(represented(model(), *context.backend), variant_,
-                   budget_from(params).generators) {}
+                   budget_from(params).generators),
+        outputs_(model(), *context.backend) {}
 
   LineForm initial_set() const override { return X0_; }
   Tightness claim() const override { return Tightness::outer; }
@@ -67,9 +69,15 @@ class StripObserver final : public Observer {
                             Tightness::outer);
   }
 
+  OutputBounds output_bounds(const Set& X, Index output, const Sample& now) override {
+    const auto [bounds, error] = outputs_.bounds(X.interval_hull(), output, now);
+    return {bounds.lower, bounds.upper, error};
+  }
+
   LineForm X0_;
   StripVariant variant_;
   StripRecursion recursion_;
+  FormulaOutputs outputs_;
 };
 
 void check_zonotope(const ObserverContext& context, const LineForm& set, const char* name,

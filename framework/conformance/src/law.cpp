@@ -15,4 +15,16 @@ TestCase two_sets(const Setting& s) {
   return test;
 }
 
+LawEntry law_of(std::string kind, std::string name, std::string statement,
+                std::function<TestCase(const Setting&)> generate,
+                std::function<Verdict(const Context&, const TestCase&)> check, double share) {
+  LawEntry entry{{std::move(name), std::move(statement), std::move(kind)},
+                 std::move(generate),
+                 std::move(check)};
+  entry.share = share;
+  entry.largest_dim = 3;
+  entry.without_backend = true;
+  return entry;
+}
+
 }  // namespace cordon::conformance

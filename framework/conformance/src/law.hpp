@@ -44,9 +44,10 @@ struct Tally {
 /// What a check sees besides the case.
 struct Context {
   const Subject& subject;
-  std::shared_ptr<const SetBackend> backend;
+  std::shared_ptr<const SetBackend> backend;  ///< that is checked; null of other kinds
   Tally& tally;
 
+  const Registry& registry() const { return *subject.registry; }
   const BackendInfo& info() const { return backend->info(); }
   bool exact_exchange() const { return info().exact_exchange; }
 };
@@ -79,6 +80,12 @@ struct LawEntry {
       false;  ///< the law makes and destroys its own, so that none is alive besides
 };
 
+/// Laws about components of another kind: a generator and a check, which makes what it needs of
+/// `Subject::registry`.
+LawEntry law_of(std::string kind, std::string name, std::string statement,
+                std::function<TestCase(const Setting&)> generate,
+                std::function<Verdict(const Context&, const TestCase&)> check, double share = 0.4);
+
 using LawList = std::vector<LawEntry>;
 void add_soundness(LawList& list);
 void add_measurements(LawList& list);
@@ -88,8 +95,16 @@ void add_empty_set(LawList& list);
 void add_algebra(LawList& list);
 void add_questions(LawList& list);
 void add_agreement(LawList& list);
+void add_convexity(LawList& list);
 void add_contract(LawList& list);
 void add_lifetime(LawList& list);
+void add_observers(LawList& list);
+void add_observer_contract(LawList& list);
+void add_diagnosers(LawList& list);
+void add_designers(LawList& list);
+void add_gains(LawList& list);
+void add_metrics(LawList& list);
+void add_plants(LawList& list);
 const LawList& law_list();
 
 }  // namespace cordon::conformance

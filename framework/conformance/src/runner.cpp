@@ -49,6 +49,7 @@ TestCase generate(const LawEntry& entry, const Options& options, const BackendIn
 struct Outcome {
   Verdict verdict;
   bool unsupported = false;
+  std::string refusal = {};
 };
 
 /// An exception is an outcome: a refusal, or a broken contract.
@@ -56,8 +57,9 @@ Outcome attempt(const LawEntry& entry, const Context& context, const TestCase& t
   try {
     return {entry.check(context, test), false};
   } catch (const Error& error) {
-    if (error.code() == Errc::unsupported || error.code() == Errc::solver) return {{}, true};
-    return {Verdict::fails("an operation with legal operands threw Errc::" +
+    if (error.code() == Errc::unsupported || error.code() == Errc::solver)
+      return {{}, true, error.what()};
+    return {Verdict::fails("a call with legal operands threw Errc::" +
                            std::string(to_string(error.code())) + ": " + error.what()),
             false};
   } catch (const std::exception& error) {
@@ -90,6 +92,19 @@ void report_failure(const LawEntry& entry, const Context& context, const Options
   result.replay = replay_line(context.subject, entry, options);
 }
 
+/// Of a law that nothing was found by.
+void tell_skipped(const std::string& kind, const std::string& refusal, Result& result) {
+  const bool is_backend = kind == "backend";
+  if (result.unsupported == result.cases) {
+    result.status = Status::skipped;
+    result.reason = is_backend ? "the backend refused every case (Errc::unsupported)"
+                               : "the " + kind + " refused every case: " + refusal;
+  } else if (result.unsupported + result.inapplicable == result.cases) {
+    result.status = Status::skipped;
+    result.reason = "no case bears on this law for this " + kind;
+  }
+}
+
 Result check_entry(const LawEntry& entry, const Subject& subject, const Options& options,
                    const Progress& progress) {
   Result result;
@@ -106,12 +121,14 @@ Result check_entry(const LawEntry& entry, const Subject& subject, const Options&
       return result;
     }
   }
+  std::string refusal;  // the first
   for (Index k = 0; k < planned; ++k) {
     if (progress) progress(entry.law, k, planned);
     TestCase test =
         generate(entry, options, entry.without_backend ? BackendInfo{} : context.info(), k);
     ++result.cases;
     const Outcome outcome = attempt(entry, context, test);
+    if (outcome.unsupported && refusal.empty()) refusal = outcome.refusal;
     result.unsupported += outcome.unsupported;
     result.inapplicable += outcome.verdict.kind == Verdict::Kind::inapplicable;
     if (!outcome.verdict.failed()) continue;
@@ -126,13 +143,7 @@ Result check_entry(const LawEntry& entry, const Subject& subject, const Options&
   }
   result.questions = tally.questions;
   result.unknown = tally.unknown;
-  if (result.unsupported == result.cases) {
-    result.status = Status::skipped;
-    result.reason = "the backend refused every case (Errc::unsupported)";
-  } else if (result.unsupported + result.inapplicable == result.cases) {
-    result.status = Status::skipped;
-    result.reason = "no case bears on this law for this backend";
-  }
+  tell_skipped(entry.law.kind, refusal, result);
   return result;
 }
 
@@ -154,7 +165,15 @@ const LawList& law_list() {
     add_algebra(all);
     add_questions(all);
     add_agreement(all);
+    add_convexity(all);
     add_contract(all);
+    add_observers(all);
+    add_observer_contract(all);
+    add_diagnosers(all);
+    add_designers(all);
+    add_gains(all);
+    add_metrics(all);
+    add_plants(all);
     return all;
   }();
   return list;
@@ -184,7 +203,7 @@ std::vector<Result> check(const Subject& subject, const Options& options,
                           const Progress& progress) {
   std::vector<Result> results;
   for (const LawEntry& entry : law_list()) {
-    if (matches(options.laws, entry.law.name))
+    if (entry.law.kind == subject.kind && matches(options.laws, entry.law.name))
       results.push_back(check_entry(entry, subject, options, progress));
   }
   return results;

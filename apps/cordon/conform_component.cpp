@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parameters from JSON, by the schema of the backend; the plugin's library alone.
-#include "conform_backend.hpp"
+// Parameters from JSON, by the schema of the component; the plugin's library alone.
+#include "conform_component.hpp"
 
 #include <cstdint>
 
@@ -69,7 +69,7 @@ Params::Value value_from(const Json& json, const ParamSpec& spec) {
 
 }  // namespace
 
-Params params_from(const std::string& text, const ParamSchema& schema) {
+Params params_from(const std::string& text, const ParamSchema& schema, bool complete) {
   Json json;
   try {
     json = Json::parse(text);
@@ -83,11 +83,12 @@ Params params_from(const std::string& text, const ParamSchema& schema) {
   for (const auto& [name, value] : json.items()) {
     const ParamSpec* spec = schema.find(name);
     if (!spec) {
-      throw Error(Errc::invalid, fmt::format("--params: the backend has no parameter \"{}\"; {}",
-                                             name, suggest(name, schema.names())));
+      throw Error(Errc::invalid, fmt::format("--params: there is no parameter \"{}\"; {}", name,
+                                             suggest(name, schema.names())));
     }
     params.set(name, value_from(value, *spec));
   }
+  if (!complete) return params;
   if (const auto problems = schema.complete(params); !problems.empty())
     throw InputError("--params", problems);
   return params;
