@@ -295,13 +295,13 @@ class Verification {
 
   /// Of matrices that are known by intervals, for two draws.
   template <class SuccessorsIn>
-  void check_in_directions(StepCheck& check, Index k, bool follows_its_sets, SuccessorsIn&& in) {
+  void check_in_directions(StepCheck& check, Index k, bool holds_successors, SuccessorsIn&& in) {
     const Matrix directions =
         directions_of(run_.model.states(), options_.directions, options_.seed, k);
     Model model = run_.model;
     for (int draw = 0; draw < (model.linear.is_uncertain() ? 2 : 1); ++draw) {
       model.linear = drawn(run_.model.linear, k, draw);
-      check.against(in(model), directions, follows_its_sets, options_.stop);
+      check.against(in(model), directions, holds_successors, options_.stop);
     }
   }
 
@@ -335,12 +335,14 @@ class Verification {
           [&] { return enclosed_successors(model, start, estimation.admissible_set, transition); }};
     };
     const bool follows = i == 0 || anew || row_before;
+    const bool holds_successors =  // an outer export is larger than the set that was held
+        estimation.follows_its_sets && (!row_before || row_before->exact_exchange);
     if (!check.violation()) {
       if (formulas_ && step.consistent == Answer::no && formulas_->proves_none(options_.deadline)) {
         ++found.proofs;
       } else if (!run_.model.is_linear()) {
         if (!samples_) samples_.emplace(run_.model, options_.seed);
-        const bool asked = follows && (estimation.follows_its_sets || !row_before);
+        const bool asked = follows && (holds_successors || !row_before);
         found.by_supports += samples_->check(check, asked ? &start : nullptr, transition) ? 1 : 0;
       } else if (F && is_converted(*F)) {
         check.against(*F, follows ? successors_in(run_.model) : unknown_successors(row.set.dim()));
@@ -348,9 +350,7 @@ class Verification {
       } else if (!follows) {
         check.skipped("the step does not follow the one before: its successors are not checked");
       } else {
-        // successors of a form that only holds the set are more than those of the set
-        const bool all = estimation.follows_its_sets && (!row_before || row_before->exact_exchange);
-        check_in_directions(check, row.k, all, successors_in);
+        check_in_directions(check, row.k, holds_successors, successors_in);
         ++found.by_supports;
       }
     }
