@@ -45,6 +45,8 @@ inline constexpr Budget budgets[] = {
     {"generalised_intersection/10/100/20", 10},
     {"generalised_intersection/20/200/50", 60},
     {"fixed_lag/three_states/40/10/5", 300},
+    {"ellipsoid/trace/nominal", 8},
+    {"ellipsoid/volume/nominal", 7},
     {"plugins_loaded_and_study_validated", 20000},
 };
 
