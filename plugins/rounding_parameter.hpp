@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parameter `rounding`, common to all four representations.
+// The parameter `rounding`, common to all representations.
 #pragma once
 
 #include "cordon/interfaces/backend.hpp"

@@ -113,7 +113,7 @@ bool intersect(Widened& X, VectorIn rho, Strip strip, StripMethod method) {
     for (Index i = 0; i < n; ++i) X.radius[i] = plus_up(X.radius[i], std::abs(G(i, j)));
     G.col(j).setZero();
   }
-  X.Z = drop_zero_generators({X.Z.c, std::move(G)});
+  X.Z = drop_zero_generators(Zonotope{X.Z.c, std::move(G)});
   return true;
 }
 

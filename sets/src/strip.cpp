@@ -45,7 +45,7 @@ Zonotope member_of_family(const Zonotope& Z, VectorIn rho, double shift, double 
     if ((G.col(j).array().abs() <= lambda.array().abs() * level).all()) G.col(j).setZero();
   }
   G.rightCols(1) = sigma * lambda;
-  return drop_zero_generators({Z.c + lambda * shift, std::move(G)});
+  return drop_zero_generators(Zonotope{Z.c + lambda * shift, std::move(G)});
 }
 
 /// Puts Z(λ) in place of Z; false if the intersection is proven empty. The errors of every ρᵀg are

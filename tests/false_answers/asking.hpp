@@ -23,7 +23,8 @@ struct Represented {
 inline std::vector<std::shared_ptr<const SetBackend>> backends(const std::string& rounding) {
   static const Plugins plugins;
   std::vector<std::shared_ptr<const SetBackend>> all;
-  for (const char* name : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
+  for (const char* name :
+       {"interval", "zonotope", "constrained_zonotope", "line_zonotope", "ellipsoid"}) {
     Params params;
     params.set("rounding", rounding);
     all.push_back(plugins.backend(name, params));

@@ -75,7 +75,8 @@ struct Bench {
 const std::vector<Bench> benches{{"interval", false, false},
                                  {"zonotope", false, false},
                                  {"constrained_zonotope", false, true},
-                                 {"line_zonotope", true, true}};
+                                 {"line_zonotope", true, true},
+                                 {"ellipsoid", false, true}};
 
 RationalSet exact(const Set& X) {
   return X.backend().info().name == "interval" ? RationalSet::of(X.interval_hull())
@@ -177,7 +178,7 @@ Tally run(const SetBackend& backend, const Bench& bench, int first, int seeds) {
     const Matrix B = source.matrix(n, n);
     const Enclosure mapped = fresh(backend.affine_map(again, B, source.vector(n)));
     const Enclosure reduced = backend.reduce(mapped, {n + 1 + source.upto(1), source.upto(1)});
-    tally.compare(source, exact(*mapped), reduced);
+    if (reduced.set != mapped.set) tally.compare(source, exact(*mapped), reduced);
 
     const Matrix radius = source.matrix(p, n).cwiseAbs(), member = end_of(A, radius);
     Enclosure image = backend.interval_map(X, {A, radius});
@@ -220,7 +221,8 @@ TEST_CASE("with outward rounding no exact result escapes; with nominal rounding 
     CHECK(tally.checks > 200);
     CHECK(tally.exact_claims > 20);
     check_encloses(tally);
-    if (bench.name == "interval") continue;  // its kernels round outward in either mode
+    // kernels that round outward in either mode
+    if (bench.name == "interval" || bench.name == "ellipsoid") continue;
     CHECK(run(*plugins.backend(bench.name), bench, 1, 6).escapes > 3);
   }
 }

@@ -212,8 +212,8 @@ const Mistake data[] = {
 const Mistake components[] = {
     {"\"type\": \"zonotope\", \"strip\"", "\"type\": \"zonotopes\", \"strip\"",
      "/pipelines/0/backend/type", "no backend \"zonotopes\"", "did you mean \"zonotope\"?"},
-    {"\"type\": \"zonotope\", \"strip\"", "\"type\": \"ellipsoid\", \"strip\"",
-     "/pipelines/0/backend/type", "no backend \"ellipsoid\"", "cordon doctor"},
+    {"\"type\": \"zonotope\", \"strip\"", "\"type\": \"octagon\", \"strip\"",
+     "/pipelines/0/backend/type", "no backend \"octagon\"", "cordon doctor"},
     {"\"backend\": \"line_zonotope\"", "\"backend\": \"line_zonotop\"", "/pipelines/1/backend",
      "no backend \"line_zonotop\"", "did you mean \"line_zonotope\"?"},
     {"\"backend\": \"line_zonotope\"", "\"backend\": 3", "/pipelines/1/backend",

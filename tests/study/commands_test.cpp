@@ -156,17 +156,17 @@ TEST_CASE("validate opens the recorded data of every value of a sweep") {
 
 TEST_CASE("a refused plugin that the study needs is exit code 3") {
   const Scratch scratch;
-  scratch.write("ellipsoid.so", "not a library");
+  scratch.write("octagon.so", "not a library");
   std::ifstream file(main_study);
   const std::string text(std::istreambuf_iterator<char>(file), {});
   const std::string study =
       scratch
-          .write("s.json", exchanged(text, "{\"type\": \"interval\"}", "{\"type\": \"ellipsoid\"}"))
+          .write("s.json", exchanged(text, "{\"type\": \"interval\"}", "{\"type\": \"octagon\"}"))
           .string();
   const Outcome outcome =
       run("--plugins " + scratch.path().string() + " validate " + study, "2>&1");
   CHECK(outcome.code == 3);
-  CHECK(outcome.out.find("ellipsoid.so was refused") != std::string::npos);
+  CHECK(outcome.out.find("octagon.so was refused") != std::string::npos);
 }
 
 TEST_CASE(

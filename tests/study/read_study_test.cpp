@@ -269,17 +269,17 @@ TEST_CASE("recorded data: the file is looked for beside the study") {
 TEST_CASE("a component of a refused plugin is a problem of the installation") {
   const Scratch scratch;
   std::filesystem::create_directory(scratch.path() / "plug");
-  std::ofstream(scratch.path() / "plug" / "ellipsoid.so") << "not a library";
+  std::ofstream(scratch.path() / "plug" / "octagon.so") << "not a library";
   const std::string with_plugins =
       exchanged(valid_study, "\"title\": \"a study\"", "\"plugins\": [\"plug\"]");
 
   const Study unaffected = read_file(scratch.write("s.json", with_plugins));
   REQUIRE(unaffected.warnings.size() == 1);
-  CHECK(unaffected.warnings[0].find("ellipsoid.so was refused") != std::string::npos);
+  CHECK(unaffected.warnings[0].find("octagon.so was refused") != std::string::npos);
   expect_round_trip(unaffected, scratch.path());
 
   const std::string needs_it = exchanged(
-      with_plugins, "\"type\": \"zonotope\", \"strip\": \"volume\"", "\"type\": \"ellipsoid\"");
+      with_plugins, "\"type\": \"zonotope\", \"strip\": \"volume\"", "\"type\": \"octagon\"");
   try {
     read_file(scratch.write("s.json", needs_it));
     FAIL("no error");
@@ -287,13 +287,13 @@ TEST_CASE("a component of a refused plugin is a problem of the installation") {
     CHECK(error.code() == Errc::plugin);
     const std::string what = error.what();
     CHECK(what.find("/pipelines/0/backend/type") != std::string::npos);
-    CHECK(what.find("ellipsoid.so was refused") != std::string::npos);
+    CHECK(what.find("octagon.so was refused") != std::string::npos);
   }
   // together with a mistake of the file it is one of the problems
   const std::string what =
       message_of(scratch.write("s.json", exchanged(needs_it, "\"radius\"", "\"radus\"")));
   CHECK(what.find("2 errors") != std::string::npos);
-  CHECK(what.find("ellipsoid.so was refused") != std::string::npos);
+  CHECK(what.find("octagon.so was refused") != std::string::npos);
 }
 
 TEST_CASE("without any plugin the installation is at fault, told once per kind") {
