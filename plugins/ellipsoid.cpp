@@ -143,13 +143,15 @@ struct Ellipsoids {
     return {{X.dim(), std::move(given)}, Y.exact ? Tightness::exact : Tightness::outer};
   }
 
-  static void add(sets::EllipsoidSum& sum, MatrixIn T, const Value& X) {
+  /// Whether what is added is T X itself.
+  static bool add(sets::EllipsoidSum& sum, MatrixIn T, const Value& X) {
     const Given* given = X.given();
     if (given && given->is_zonotope()) {
       sum.add(T, given->zonotope());
-    } else {
-      sum.add(T, given ? *given->around : *X.ellipsoid());
+      return true;
     }
+    sum.add(T, given ? *given->around : *X.ellipsoid());
+    return !given;
   }
 
   Result predict(const Value& X, MatrixIn A, VectorIn f,
@@ -160,9 +162,11 @@ struct Ellipsoids {
     }
     if (auto kept = placed(X, A, f, operands)) return {{A.rows(), std::move(*kept)}};
     sets::EllipsoidSum sum(f);
-    add(sum, A, X);
-    for (const auto& operand : operands) add(sum, operand.T, operand.value);
-    return result(sum.enclosed());
+    bool exact = add(sum, A, X);
+    for (const auto& operand : operands) exact = add(sum, operand.T, operand.value) && exact;
+    Result found = result(sum.enclosed());
+    if (!exact) found.tightness = Tightness::outer;
+    return found;
   }
 
   /// Products of zonotopes that were imported, and they themselves, stay what they are.
@@ -222,7 +226,7 @@ struct Ellipsoids {
   Result interval_map(const Value& X, const IntervalMatrix& A) const {
     if (X.is_empty()) return empty(A.rows());
     sets::EllipsoidSum sum(Vector::Zero(A.rows()));
-    add(sum, A.center, X);
+    const bool exact = add(sum, A.center, X) && A.is_exact();
     if (!A.is_exact()) {
       const Box hull = interval_hull(X, nullptr);
       const Vector reach = hull.lower.cwiseAbs().cwiseMax(hull.upper.cwiseAbs());
@@ -232,7 +236,7 @@ struct Ellipsoids {
       sum.add_box(radius);
     }
     Result image = result(sum.enclosed());
-    if (!A.is_exact()) image.tightness = Tightness::outer;
+    if (!exact) image.tightness = Tightness::outer;
     return image;
   }
 

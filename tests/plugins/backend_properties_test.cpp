@@ -201,6 +201,22 @@ TEST_CASE("operations enclose and keep their claims") {
   }
 }
 
+TEST_CASE("an ellipsoid around constraints is not claimed to be the set") {
+  const Plugins plugins;
+  const auto backend = plugins.backend("ellipsoid");
+  // a segment of the diagonal, and its image
+  const LineForm X{Matrix(2, 0), Matrix::Identity(2, 2), Vector::Zero(2),
+                   Matrix(1, 0), Matrix{{1, -1}},        Vector{{0.0}}};
+  const Enclosure segment = backend->import(X);
+  CHECK(segment.tightness == Tightness::exact);
+  CHECK(segment->support(Vector{{1, -1}}) == doctest::Approx(0));
+  const Matrix T{{2, 0}, {0, 1}};
+  CHECK(backend->affine_map(segment, T, Vector::Zero(2)).tightness == Tightness::outer);
+  CHECK(backend->interval_map(segment, IntervalMatrix(T)).tightness == Tightness::outer);
+  const Enclosure plain = backend->import(make_zonotope(Vector{{1, 2}}, Matrix{{1}, {1}}));
+  CHECK(backend->affine_map(plain, T, Vector::Zero(2)).tightness == Tightness::exact);
+}
+
 TEST_CASE("the empty set absorbs, and is neutral in the hull") {
   const Plugins plugins;
   for (const Case& c : cases) {

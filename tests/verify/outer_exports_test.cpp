@@ -63,8 +63,8 @@ TEST_CASE("estimates by ellipsoids are no violation, compared exactly or along d
     fs::create_directories(home);
     std::ofstream(home / "study.json") << chain(states, 12).dump();
     const std::string out = (home / "out").string();
-    const auto run =
-        test::cordon_with("run --quiet --out " + out + " " + (home / "study.json").string() + " 2>&1");
+    const auto run = test::cordon_with("run --quiet --out " + out + " " +
+                                       (home / "study.json").string() + " 2>&1");
     CAPTURE(run.out);
     REQUIRE(run.code == 0);
     const auto verified = test::cordon_with("verify " + out + " 2>&1");
