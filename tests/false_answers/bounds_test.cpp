@@ -93,7 +93,8 @@ TEST_CASE("A cut far from the origin") {
     CHECK(end >= -995);
     CHECK(end < -990);  // the cut is seen
     if (half.tightness == Tightness::exact) CHECK(end == doctest::Approx(-995).epsilon(1e-12));
-    CHECK(half->contains(Vector{{-992, 0}}) == Answer::no);
+    if (end < -992 || r.name.find("ellipsoid") == std::string::npos)  // which go around corners
+      CHECK(half->contains(Vector{{-992, 0}}) == Answer::no);
   }
 }
 
