@@ -119,7 +119,7 @@ Box interval_hull(const Ellipsoid& X);
 /// `yes` by factors u, `no` by a direction.
 Answer contains(const Ellipsoid& X, VectorIn x);
 
-/// An upper bound of the volume, and whether it is the volume to 1e-7. Nothing if L is flat, or
+/// An upper bound of the volume, and whether it is the volume to 1e-8. Nothing if L is flat, or
 /// nearly so.
 struct EllipsoidVolume {
   double value = 0;
