@@ -47,7 +47,11 @@ class Rewriter {
     const auto sweep = root.find("sweep");
     for (std::size_t i = 0; sweep && i < sweep->size(); ++i) {
       const auto path = sweep->item(i).find("path");
-      if (path && path->is(Kind::text)) axes_.push_back(steps_of(path->value().text()));
+      const bool list = path && path->is(Kind::array);
+      for (std::size_t j = 0; path && j < (list ? path->size() : 1); ++j) {
+        const Cursor one = list ? path->item(j) : *path;
+        if (one.is(Kind::text)) axes_.push_back(steps_of(one.value().text()));
+      }
     }
   }
 

@@ -139,7 +139,7 @@ void TableReader::read_axes(const Cursor& root) {
     if (!at.expect(Kind::object, not_as_written)) continue;
     SweepAxis& axis = read_.table.axes.emplace_back();
     axis.name = text_of(at, "name");
-    axis.path = text_of(at, "path");
+    if (const auto path = at.need("path", not_as_written)) axis.path = resolved_path_text(*path);
     if (const auto repeat = at.need("repeat", not_as_written))
       axis.repeat = read_flag(*repeat).value_or(false);
     const auto values = at.need("values", not_as_written);

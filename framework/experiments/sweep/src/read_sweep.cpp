@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/reading/read_sweep.hpp"
+
 #include <algorithm>
 #include <functional>
 
@@ -94,7 +96,8 @@ void read_axis(const Cursor& at, Study& study) {
   if (!at.expect(Kind::object, not_as_written)) return;
   SweepAxis& axis = study.sweep.emplace_back();
   axis.name = text(at, "name");
-  axis.path = text(at, "path");
+  if (const auto path = at.need("path", not_as_written))
+    axis.path = json::resolved_path_text(*path);
   const auto repeat = at.need("repeat", not_as_written), values = at.need("values", not_as_written);
   axis.repeat = repeat && json::read_flag(*repeat).value_or(false);
   if (values && values->expect(Kind::array, not_as_written) && values->size() == 0)

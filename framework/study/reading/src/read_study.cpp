@@ -174,7 +174,7 @@ Study StudyReader::read(const std::vector<std::string>& settings) {
   }
   for (const WrittenAxis& axis : source_->sweep) {
     SweepAxis& made = study.sweep.emplace_back(
-        SweepAxis{axis.name, axis.path.text, {}, axis.repeat, axis.labels});
+        SweepAxis{axis.name, axis.path_text(), {}, axis.repeat, axis.labels});
     for (const Value& value : axis.values) made.values.push_back(canonical_text(value));
   }
   if (std::string warning = overlapping_seeds(study, source_->sweep); !warning.empty())

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <set>
+
+#include <nlohmann/json.hpp>
 
 #include "study/reading/read_parts.hpp"
 #include "study/reading/scaled_value.hpp"
@@ -22,6 +23,39 @@ constexpr const char* axis_form =
     "{\"name\": \"seed\", \"path\": \"/data/simulate/seed\", \"range\": [1, 50]}";
 
 }  // namespace
+
+const Value& WrittenAxis::value(std::size_t i, std::size_t j) const {
+  return together ? values[i].items()[j] : values[i];
+}
+
+bool WrittenAxis::leads_to(std::string_view place) const {
+  return std::any_of(paths.begin(), paths.end(),
+                     [&](const SweepPath& path) { return path.leads_to(place); });
+}
+
+bool WrittenAxis::ends_at(std::string_view place) const {
+  return std::any_of(paths.begin(), paths.end(),
+                     [&](const SweepPath& path) { return path.ends_at(place); });
+}
+
+bool WrittenAxis::meets(const WrittenAxis& other) const {
+  return std::any_of(paths.begin(), paths.end(), [&](const SweepPath& path) {
+    return std::any_of(other.paths.begin(), other.paths.end(),
+                       [&](const SweepPath& its) { return path.meets(its); });
+  });
+}
+
+std::string WrittenAxis::path_text() const {
+  if (!together) return paths.front().text;
+  nlohmann::json list = nlohmann::json::array();
+  for (const SweepPath& path : paths) list.push_back(path.text);
+  return list.dump();
+}
+
+std::string resolved_path_text(const Cursor& at) {
+  if (at.is(Kind::text)) return at.value().text();
+  return at.expect(Kind::array, "a path, or a list of them") ? canonical_text(at.value()) : "";
+}
 
 std::string why_not_varied(const std::vector<PathStep>& steps) {
   const std::string& first = steps.front().key;
@@ -57,6 +91,51 @@ std::optional<SweepPath> read_path(const Cursor& at) {
     return std::nullopt;
   }
   return SweepPath{*text, std::move(*steps)};
+}
+
+/// One path, or several whose values go together; none if one of them is wrong.
+std::vector<SweepPath> read_paths(const Cursor& at) {
+  std::vector<SweepPath> paths;
+  if (!at.is(Kind::array)) {
+    if (auto path = read_path(at)) paths.push_back(std::move(*path));
+    return paths;
+  }
+  if (at.size() == 0) at.error("is an empty list", "name what is varied");
+  if (at.size() > max_axes) {
+    at.error("holds more than " + std::to_string(max_axes) + " paths");
+    return {};
+  }
+  bool good = at.size() > 0;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    auto path = read_path(at.item(i));
+    good = good && path;
+    if (!path) continue;
+    for (std::size_t j = 0; j < paths.size() && good; ++j) {
+      if (!path->meets(paths[j])) continue;
+      at.item(i).error("writes where another path of the list writes too: " + paths[j].text,
+                       "remove one of the two");
+      good = false;
+    }
+    paths.push_back(std::move(*path));
+  }
+  return good ? paths : std::vector<SweepPath>{};
+}
+
+/// Is every value a list with one for each of so many paths?
+bool are_lists(const Cursor& at, std::size_t paths) {
+  bool good = true;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const std::string form = "a list of " + std::to_string(paths) + " values, one for each path";
+    if (!at.item(i).expect(Kind::array, form)) {
+      good = false;
+    } else if (at.item(i).size() != paths) {
+      at.item(i).error("has " + counted(static_cast<Index>(at.item(i).size()), "value") + " for " +
+                           counted(static_cast<Index>(paths), "path"),
+                       "give one for each path");
+      good = false;
+    }
+  }
+  return good;
 }
 
 std::vector<Value> read_values(const Cursor& at) {
@@ -138,7 +217,7 @@ std::vector<std::string> read_labels(const Cursor& at, const std::vector<Value>&
 
 /// Factors in place of values: each is what stands at the path, times the factor.
 void scale_values(const Cursor& root, const Cursor& scale_at, WrittenAxis& axis) {
-  const Value* const base = value_at(root.value(), axis.path, scale_at);
+  const Value* const base = value_at(root.value(), axis.paths.front(), scale_at);
   if (!base) {
     axis.values.clear();
     return;
@@ -188,22 +267,30 @@ std::optional<WrittenAxis> read_axis(const Cursor& root, const Cursor& at) {
   const auto path_at =
       scale_at ? scale_at
                : at.need("path", "what is varied: \"/pipelines/*/observer/max_generators\"");
-  auto path = path_at ? read_path(*path_at) : std::nullopt;
+  if (scale_at && scale_at->is(Kind::array))
+    scale_at->error("is a list", "one axis scales one place: give each of them an axis");
+  auto paths = path_at ? read_paths(*path_at) : std::vector<SweepPath>{};
   const auto values_at = at.find("values"), range_at = at.find("range");
   if (values_at && range_at)
     at.error("holds both \"values\" and \"range\"", "remove one of the two");
   if (!values_at && !range_at)
     at.need("values", "a list of values; or \"range\": [first, last] of integers");
   axis.range = !values_at;
+  axis.together = path_at && path_at->is(Kind::array);
+  if (axis.together && range_at)
+    range_at->error("is a range for several paths", "write values, a list for each");
   if (values_at) axis.values = read_values(*values_at);
   if (range_at) axis.values = read_range(*range_at);
   if (const auto labels_at = at.find("labels")) axis.labels = read_labels(*labels_at, axis.values);
   const auto repeat_at = at.find("repeat");
-  axis.repeat =
-      repeat_at ? read_flag(*repeat_at).value_or(false) : path && path->steps.back().key == "seed";
-  if (!name || !path || axis.values.empty()) return std::nullopt;
+  axis.repeat = repeat_at
+                    ? read_flag(*repeat_at).value_or(false)
+                    : !axis.together && !paths.empty() && paths.front().steps.back().key == "seed";
+  if (!name || paths.empty() || axis.values.empty()) return std::nullopt;
+  if (axis.together && (scale_at || range_at || !are_lists(*values_at, paths.size())))
+    return std::nullopt;
   axis.name = *name;
-  axis.path = std::move(*path);
+  axis.paths = std::move(paths);
   axis.path_line = path_at->value().line;
   if (scale_at) scale_values(root, *scale_at, axis);
   return axis.values.empty() ? std::nullopt : std::optional(std::move(axis));
@@ -221,10 +308,10 @@ std::set<std::size_t> check_pairs(const Cursor& list,
       const std::string other = child(list.pointer(), before);
       if (axis.name == earlier.name)
         list.item(index).find("name")->error("repeats the name of " + other, "names are unique");
-      if (axis.path.meets(earlier.path)) {
+      if (axis.meets(earlier)) {
         const Cursor at = list.item(index);
         at.find(at.find("scale") ? "scale" : "path")
-            ->error("writes where " + other + " writes too: " + earlier.path.text,
+            ->error("writes where " + other + " writes too: " + earlier.path_text(),
                     "remove one of the two, or make them one axis with objects as values");
         wrong.insert(j);
       }
@@ -272,19 +359,22 @@ std::vector<WrittenAxis> read_sweep(const Cursor& root) {
 Value substituted(const Value& tree, const std::vector<WrittenAxis>& axes,
                   const std::vector<std::size_t>& at, const Registry& registry,
                   Problems& problems) {
-  std::vector<std::size_t> order(axes.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto rank = [&](std::size_t i) {
-    return axes[i].path.is_type() ? axes[i].path.steps.size() : std::size_t{max_depth} + 1;
+  std::vector<std::pair<std::size_t, std::size_t>> order;  // axis and path
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    for (std::size_t j = 0; j < axes[i].paths.size(); ++j) order.emplace_back(i, j);
+  const auto rank = [&](const std::pair<std::size_t, std::size_t>& one) {
+    const SweepPath& path = axes[one.first].paths[one.second];
+    return path.is_type() ? path.steps.size() : std::size_t{max_depth} + 1;
   };
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t i, std::size_t j) { return rank(i) < rank(j); });
+                   [&](const auto& one, const auto& other) { return rank(one) < rank(other); });
   Value result = tree;
-  for (const std::size_t i : order) {
-    Placement placement = place(result, axes[i].path, axes[i].values[at[i]], registry);
+  for (const auto& [i, j] : order) {
+    Placement placement = place(result, axes[i].paths[j], axes[i].value(at[i], j), registry);
     if (!placement.problem.empty()) {
-      problems.add(axes[i].pointer + "/path", axes[i].path_line, std::move(placement.problem),
-                   std::move(placement.suggestion));
+      const std::string pointer = axes[i].pointer + "/path";
+      problems.add(axes[i].together ? child(pointer, j) : pointer, axes[i].path_line,
+                   std::move(placement.problem), std::move(placement.suggestion));
     }
     result = std::move(placement.tree);
   }

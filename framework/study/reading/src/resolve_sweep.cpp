@@ -109,13 +109,17 @@ void add_sweep(Json& resolved, const Value& tree, const std::vector<WrittenAxis>
   keep_continuous(resolved, tree);
   Json list = Json::array();
   for (const WrittenAxis& axis : axes) {
-    if (axis.path.steps.front().key == "system") {
-      resolved["system"] = written_json(*tree.find("system"));
-    } else {
-      PathKeeper(axis.path).keep(resolved, tree, 0);
+    Json paths = Json::array();
+    for (const SweepPath& path : axis.paths) {
+      if (path.steps.front().key == "system") {
+        resolved["system"] = written_json(*tree.find("system"));
+      } else {
+        PathKeeper(path).keep(resolved, tree, 0);
+      }
+      paths.push_back(path.text);
     }
     Json entry{{"name", axis.name},
-               {"path", axis.path.text},
+               {"path", axis.together ? paths : paths.front()},
                {"repeat", axis.repeat},
                {"values", Json::array()}};
     for (const Value& value : axis.values) entry["values"].push_back(written_json(value));

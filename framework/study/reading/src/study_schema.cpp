@@ -289,13 +289,14 @@ Json sweep() {
                              static_cast<std::int64_t>(json::max_integer));
   Json properties;
   properties["name"] = described(text(200), "unique; the name of its column in tables");
-  properties["path"] =
-      described(Json{{"type", "string"}, {"pattern", "^(/([^~]|~[01])*)+$"}, {"maxLength", 4096}},
-                "what is varied: a JSON pointer, with \"*\" for every element of a list: "
-                "/pipelines/*/observer/max_generators");
-  properties["scale"] =
-      described(properties["path"],
-                "in place of path: one place, whose number, matrix or set is scaled by the values");
+  const Json one_path{{"type", "string"}, {"pattern", "^(/([^~]|~[01])*)+$"}, {"maxLength", 4096}};
+  const Json paths{{"type", "array"}, {"items", one_path}, {"minItems", 1}, {"maxItems", 100}};
+  properties["path"] = described(
+      Json{{"anyOf", {one_path, paths}}},
+      "what is varied: a JSON pointer, with \"*\" for every element of a list: "
+      "/pipelines/*/observer/max_generators; or a list of them, whose values go together");
+  properties["scale"] = described(
+      one_path, "in place of path: one place, whose number, matrix or set is scaled by the values");
   properties["values"] = described(
       Json{{"type", "array"}, {"minItems", 1}, {"maxItems", 100'000}, {"uniqueItems", true}},
       "they take the place of what stands there, one after another");

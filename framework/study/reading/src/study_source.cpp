@@ -29,7 +29,10 @@ std::string StudySource::question(const Registry& registry, std::size_t pipeline
   std::string key =
       std::to_string(reinterpret_cast<std::uintptr_t>(&registry)) + ' ' + std::to_string(pipeline);
   for (std::size_t i = 0; i < sweep.size(); ++i) {
-    if (concerns(sweep[i].path, pipeline)) key += ' ' + std::to_string(at[i]);
+    const std::vector<SweepPath>& paths = sweep[i].paths;
+    if (std::any_of(paths.begin(), paths.end(),
+                    [&](const SweepPath& path) { return concerns(path, pipeline); }))
+      key += ' ' + std::to_string(at[i]);
   }
   return key;
 }

@@ -73,7 +73,7 @@ class SweepChecker {
 
   /// The axis that leads to the place of a problem, if there is one.
   const WrittenAxis* axis_of(const Diagnostic& d) const {
-    const auto leads = [&](const WrittenAxis& axis) { return axis.path.leads_to(d.pointer); };
+    const auto leads = [&](const WrittenAxis& axis) { return axis.leads_to(d.pointer); };
     const auto found = std::find_if(source_.sweep.begin(), source_.sweep.end(), leads);
     return found == source_.sweep.end() ? nullptr : &*found;
   }
@@ -100,7 +100,7 @@ class SweepChecker {
             of_values ? "/sweep" : d.pointer, of_values ? source_.tree.find("sweep")->line : d.line,
             of_values ? "with the first values, " + d.pointer + " " + d.message : d.message,
             d.suggestion);
-      } else if (axis->path.ends_at(d.pointer) && found.is_unknown(d.pointer)) {
+      } else if (axis->ends_at(d.pointer) && found.is_unknown(d.pointer)) {
         tell(axis->pointer + "/path", axis->path_line, "leads to " + d.pointer + ": " + d.message,
              d.message, d.suggestion);
       } else {
@@ -125,7 +125,7 @@ class SweepChecker {
   bool tell_value(const WrittenAxis& axis, std::size_t value, const Diagnostic& d) {
     const std::string which =
         axis.range ? "the value " + canonical_text(axis.values[value]) + " " : "";
-    const std::string text = axis.path.ends_at(d.pointer)
+    const std::string text = axis.ends_at(d.pointer)
                                  ? d.message + " (at " + d.pointer + ")"
                                  : "makes " + d.pointer + " wrong: " + d.message;
     const std::string place = d.pointer.substr(
@@ -149,7 +149,7 @@ class SweepChecker {
       const bool refused = !reading.refusals.empty();
       if (!found.any() && !refused) remember(at, reading.study.pipelines.size());
       const auto known = [&](const Diagnostic& d) {
-        const bool own_place = axis.path.leads_to(d.pointer) && !found.is_unknown(d.pointer);
+        const bool own_place = axis.leads_to(d.pointer) && !found.is_unknown(d.pointer);
         return !own_place && told_.count({d.pointer, d.message}) > 0;
       };
       std::size_t told = 0;
@@ -189,7 +189,7 @@ std::string overlapping_seeds(const Study& study, const std::vector<WrittenAxis>
                                      [](const PipelineSpec& spec) { return !spec.estimation(); });
   if (!simulate || simulate->seeds < 2 || !all_seeds) return "";
   for (const WrittenAxis& axis : axes) {
-    if (!axis.repeat || axis.path.text != "/data/simulate/seed") continue;
+    if (!axis.repeat || axis.path_text() != "/data/simulate/seed") continue;
     std::vector<double> seeds;
     for (const Value& value : axis.values) seeds.push_back(value.number);
     std::sort(seeds.begin(), seeds.end());

@@ -185,7 +185,7 @@ std::vector<std::pair<std::string, const ComponentSpec*>> algorithms_of(const Pi
 /// that the path matches.
 struct SweepAxis {
   std::string name;
-  std::string path;  ///< JSON pointer into the study; "*" stands for every element of an array
+  std::string path;  ///< JSON pointer into the study, "*" for every element; or a JSON list of them
   std::vector<std::string> values;  ///< JSON texts, none twice
   bool repeat = false;  ///< repetitions, seeds for example: statistics are taken over this axis
   std::vector<std::string> labels = {};  ///< what the values are called; empty: they have no names

@@ -49,7 +49,11 @@ double sampling_time_of(const json::Cursor& results) {
 
 double common_sampling_time(double of_study, const std::vector<SweepAxis>& axes) {
   const bool changes = std::any_of(axes.begin(), axes.end(), [](const SweepAxis& axis) {
-    return axis.path == "/system" || axis.path == "/system/sampling_time";
+    // also among several paths, which are told as a JSON list
+    const auto leads_to = [&](const std::string& place) {
+      return axis.path == place || axis.path.find('"' + place + '"') != std::string::npos;
+    };
+    return leads_to("/system") || leads_to("/system/sampling_time");
   });
   return changes ? 0 : of_study;
 }

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "study/reading/sweep_path.hpp"
@@ -14,14 +15,26 @@ namespace cordon::json {
 /// An axis of a sweep as it is written.
 struct WrittenAxis {
   std::string name;
-  SweepPath path;
+  std::vector<SweepPath> paths;          ///< at least one; none meets another one
+  bool together = false;                 ///< a list of paths: each value is a list, one per path
   std::vector<Value> values;             ///< at least one
   std::vector<std::string> labels = {};  ///< one per value, or none
   bool repeat = false;
   bool range = false;   ///< written as a range
   std::string pointer;  ///< of the axis
   int path_line = 0;
+
+  /// What the i-th value puts at the j-th path.
+  const Value& value(std::size_t i, std::size_t j) const;
+  bool leads_to(std::string_view place) const;
+  bool ends_at(std::string_view place) const;
+  bool meets(const WrittenAxis& other) const;
+  /// The path, or the list of them as JSON.
+  std::string path_text() const;
 };
+
+/// The same of a resolved study, whose "path" stands at `at`.
+std::string resolved_path_text(const Cursor& at);
 
 /// Why no axis may write there; empty: it may.
 std::string why_not_varied(const std::vector<PathStep>& steps);
