@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gains/gain_certificate.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
+#include "cordon/solvers/exact_modes.hpp"
 #include "gains/h_infinity_norm.hpp"
 #include "gains/rounded_products.hpp"
 
@@ -23,6 +25,28 @@ NormBounds norm_of(const invariant::ClosedLoop& closed, const Rounded& B) {
   const double A_error = closed.error.isZero(0) ? 0 : norm_of_error(closed.error);
   return h_infinity_norm(closed.value, B.value, A_error,
                          B.error.isZero(0) ? 0 : norm_of_error(B.error));
+}
+
+/// Is A - L C A ≥ 0, as the numbers stand? A product of two doubles is the sum of two, P and Q:
+/// with one of each per output and state, it is A - [P Q] [A; …; A]. False where they underflow.
+bool is_filter_nonnegative(const Matrix& A, const Matrix& L, const Matrix& C) {
+  constexpr double least = 0x1p-900;  // of a product whose rounding error is a double
+  const Index n = A.rows(), p = C.rows();
+  Matrix products(n, 2 * p * n), repeated(2 * p * n, n);
+  for (Index k = 0; k < p; ++k) {
+    for (Index m = 0; m < n; ++m) {
+      const Index at = k * n + m;
+      for (Index i = 0; i < n; ++i) {
+        const double rounded = L(i, k) * C(k, m);
+        const bool underflows = std::abs(rounded) < least && L(i, k) != 0 && C(k, m) != 0;
+        if (underflows || !std::isfinite(rounded)) return false;
+        products(i, at) = rounded;
+        products(i, p * n + at) = std::fma(L(i, k), C(k, m), -rounded);
+      }
+      repeated.row(at) = repeated.row(p * n + at) = A.row(m);
+    }
+  }
+  return exact::is_nonnegative(A, products, repeated);
 }
 
 }  // namespace
@@ -51,7 +75,9 @@ invariant::ClosedLoop loop_of_errors(const LinearModel& model, const Matrix& L, 
     known.radius = invariant::radius_bounds(known.value, known.error);
   if (known.radius.upper < 1) known.schur = Answer::yes;
   if (known.radius.lower > 1) known.schur = Answer::no;
-  if (((known.value - known.error).array() >= 0).all()) known.nonnegative = Answer::yes;
+  const bool apart = ((known.value - known.error).array() >= 0).all();
+  if (apart || is_filter_nonnegative(model.A, L, mean_outputs(model)))
+    known.nonnegative = Answer::yes;
   if (!((known.value + known.error).array() >= 0).all()) known.nonnegative = Answer::no;
   return known;
 }

@@ -26,22 +26,25 @@ Entries of PA - MC that are zero for every M and P have no interior and are left
 gain makes A - L C monotone and stable, which linear programs decide, that is the answer, with the
 reason; such as "column 2 of C is zero and A(1,2) < 0". The gain that is found is moved by the
 solver's errors, so that A - L C ≥ 0 holds for the numbers themselves where that is possible.
+
+For observers that correct a predicted set ("gain_correction", "error_hull") C A stands for C: the
+entries of (I - L C) A are those that are not negative.
 )";
 
-class HInfinityMonotone final : public GainDesigner {
+class HInfinityMonotone final : public FormedDesigner {
  public:
   explicit HInfinityMonotone(std::optional<Matrix> theta) : theta_(std::move(theta)) {}
 
  private:
-  GainDesign do_design(const Model& model) const override {
+  GainDesign do_design(const Model& model, GainForm form) const override {
     const Matrix theta = theta_of(model, theta_);
-    const ErrorDynamics errors = error_dynamics(model, theta, GainForm::predictor);
-    if (std::optional<Obstacle> why = no_monotone_gain(errors.A, shown_outputs(model.linear))) {
+    const ErrorDynamics errors = error_dynamics(model, theta, form);
+    if (std::optional<Obstacle> why = no_monotone_gain(model.linear, form)) {
       return no_gain(why->gain_exists, std::move(why->reason),
                      "an observer that needs no monotone gain, or states in which there is one");
     }
     if (std::optional<GainDesign> none = without_gain(model, errors)) return std::move(*none);
-    return h_infinity_design(model, theta, errors, {GainForm::predictor, true});
+    return h_infinity_design(model, theta, errors, {form, true});
   }
 
   std::optional<Matrix> theta_;

@@ -11,6 +11,8 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/solvers/exact_questions.hpp"
 #include "cordon/solvers/lp.hpp"
+#include "gains/gain_certificate.hpp"
+#include "gains/rounded_products.hpp"
 
 namespace cordon::estimators {
 
@@ -50,14 +52,32 @@ Obstacle obstacle(Answer proof, const std::string& why) {
   return {Answer::unknown, "no monotone gain was sought: but for rounding, " + why};
 }
 
-std::optional<Obstacle> by_structure(const Matrix& A, const Matrix& C) {
+/// What outputs show of the errors: C, or C A of a filter.
+struct ShownErrors {
+  Rounded C;
+  Matrix outputs;  ///< C itself
+  GainForm form = GainForm::predictor;
+
+  bool is_exact() const { return C.error.isZero(0); }
+  /// Is column j zero, whatever the numbers are that are not 0?
+  bool hides(const Matrix& A, Index j) const {
+    if (form == GainForm::predictor) return outputs.col(j).isZero(0);
+    for (Index k = 0; k < A.rows(); ++k) {
+      if (A(k, j) != 0 && !outputs.col(k).isZero(0)) return false;
+    }
+    return true;
+  }
+  const char* name() const { return form == GainForm::predictor ? "C" : "C A"; }
+};
+
+std::optional<Obstacle> by_structure(const Matrix& A, const ShownErrors& shown) {
   for (Index j = 0; j < A.cols(); ++j) {
-    if (!C.col(j).isZero(0)) continue;
+    if (!shown.hides(A, j)) continue;
     for (Index i = 0; i < A.rows(); ++i) {
       if (A(i, j) >= 0) continue;
       const std::string row = std::to_string(i + 1), column = std::to_string(j + 1);
-      return obstacle(Answer::yes,
-                      "column " + column + " of C is zero and A(" + row + "," + column + ") < 0");
+      return obstacle(Answer::yes, "column " + column + " of " + shown.name() + " is zero and A(" +
+                                       row + "," + column + ") < 0");
     }
   }
   return std::nullopt;
@@ -70,7 +90,26 @@ Vector without_noise(const Vector& x) {
   return (x / size).unaryExpr([](double value) { return value < noise ? 0.0 : value; });
 }
 
-std::optional<Obstacle> by_row(const Matrix& A, const Matrix& C) {
+/// Is there μ with 0 ≤ μ ≤ 1, C A μ = 0 and A_i μ < 0? By ν = A μ in two parts, C ν = 0.
+Answer is_negative_row_proven(const Matrix& A, const ShownErrors& shown, Index i) {
+  const Index n = A.rows(), p = shown.outputs.rows();
+  std::vector<int> bits(static_cast<std::size_t>(n), 0);
+  if (shown.is_exact()) return is_positive(-A.row(i).transpose(), shown.C.value, bits);
+  Matrix K = Matrix::Zero(n + p, 3 * n);
+  K.topLeftCorner(n, n) = A;
+  K.block(0, n, n, n) = -Matrix::Identity(n, n);
+  K.block(0, 2 * n, n, n).setIdentity();
+  K.block(n, n, p, n) = shown.outputs;
+  K.block(n, 2 * n, p, n) = -shown.outputs;
+  const double largest = A.cwiseAbs().rowwise().sum().maxCoeff();
+  bits.resize(static_cast<std::size_t>(3 * n), std::max(0, std::ilogb(std::max(largest, 1.)) + 2));
+  Vector cost = Vector::Zero(3 * n);
+  cost.head(n) = -A.row(i).transpose();
+  return is_positive(cost, K, bits);
+}
+
+std::optional<Obstacle> by_row(const Matrix& A, const ShownErrors& shown) {
+  const Matrix& C = shown.C.value;
   const Index n = A.rows();
   LinearProgram program(C, Vector::Zero(C.rows()), Vector::Zero(n), Vector::Ones(n));
   for (Index i = 0; i < n; ++i) {
@@ -79,7 +118,7 @@ std::optional<Obstacle> by_row(const Matrix& A, const Matrix& C) {
     if (solution.status != LinearProgram::Status::optimal || !(solution.objective > 0)) continue;
     const Vector mu = without_noise(solution.x);
     if (!(row.dot(mu) < -margin * row.cwiseAbs().dot(mu)) || !is_zero(C, mu)) continue;
-    const Answer proof = is_positive(-row, C, std::vector<int>(static_cast<std::size_t>(n), 0));
+    const Answer proof = is_negative_row_proven(A, shown, i);
     return obstacle(proof, "the outputs do not show the direction " + direction(mu) +
                                ", to four digits, and row " + std::to_string(i + 1) +
                                " of A makes a negative number of it");
@@ -110,7 +149,8 @@ Answer is_growth_proven(const Matrix& A, const Matrix& C, double largest) {
   return is_positive(sum, K, bits);
 }
 
-std::optional<Obstacle> by_growth(const Matrix& A, const Matrix& C) {
+std::optional<Obstacle> by_growth(const Matrix& A, const ShownErrors& shown) {
+  const Matrix& C = shown.C.value;
   const Index n = A.rows(), p = C.rows(), columns = n + n * n + n;
   Matrix M = Matrix::Zero(n + n * p, columns);
   for (Index i = 0; i < n; ++i) {
@@ -136,18 +176,35 @@ std::optional<Obstacle> by_growth(const Matrix& A, const Matrix& C) {
     const double terms = x[i] + A.row(i).cwiseAbs().dot(size);
     if (A.row(i).dot(x - y) < x[i] - equal * terms) return std::nullopt;
   }
-  const Answer proof = is_growth_proven(A, C, std::max(1.0, solution.x.maxCoeff()));
-  return obstacle(proof, "every monotone A - L C leaves the states " + direction(without_noise(x)) +
+  const Answer proof = shown.is_exact()
+                           ? is_growth_proven(A, C, std::max(1.0, solution.x.maxCoeff()))
+                           : Answer::unknown;
+  return obstacle(proof, std::string("every monotone ") + name_of_loop(shown.form) +
+                             " leaves the states " + direction(without_noise(x)) +
                              ", to four digits, as large as they are, and is not stable");
 }
 
 }  // namespace
 
-std::optional<Obstacle> no_monotone_gain(const Matrix& A, const Matrix& C) {
-  std::optional<Obstacle> why = by_structure(A, C);
-  if (!why) why = by_row(A, C);
-  if (!why) why = by_growth(A, C);
+namespace {
+
+std::optional<Obstacle> why_not_monotone(const Matrix& A, const ShownErrors& shown) {
+  std::optional<Obstacle> why = by_structure(A, shown);
+  if (!why) why = by_row(A, shown);
+  if (!why) why = by_growth(A, shown);
   return why;
+}
+
+}  // namespace
+
+std::optional<Obstacle> no_monotone_gain(const Matrix& A, const Matrix& C) {
+  return why_not_monotone(A, {exactly(C), C});
+}
+
+std::optional<Obstacle> no_monotone_gain(const LinearModel& model, GainForm form) {
+  const Matrix C = shown_outputs(model);
+  if (form == GainForm::predictor) return no_monotone_gain(model.A, C);
+  return why_not_monotone(model.A, {times(C, exactly(model.A)), C, form});
 }
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "cordon/core/types.hpp"
+#include "gains/gain_form.hpp"
 #include "gains/obstacle.hpp"
 
 namespace cordon::estimators {
@@ -19,6 +19,10 @@ namespace cordon::estimators {
 /// them. `no` where the same programs have a solution in rational arithmetic, and `unknown` where
 /// they have one but for rounding or are too large for it.
 std::optional<Obstacle> no_monotone_gain(const Matrix& A, const Matrix& C);
+
+/// The same for A - L 𝒞 of gain_form.hpp. What is proven of a filter is so of the product C̄ A as it
+/// is, not as it is rounded; where that is too much, the answer is `unknown`.
+std::optional<Obstacle> no_monotone_gain(const LinearModel& model, GainForm form);
 
 /// L with entries of A - L C that are negative by rounding (1e-9 of the largest of A) raised to 0
 /// where a small change of L can do so; other negative entries stay.

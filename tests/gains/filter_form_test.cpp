@@ -205,13 +205,27 @@ TEST_CASE("given gains are judged by the loop in which they stand") {
   CHECK(predictor.size() == 1);
 }
 
-TEST_CASE("designers that know the predictor's form only are refused, with others to take") {
-  for (const char* type : {"peak", "h_infinity_monotone"}) {
-    CAPTURE(type);
-    const auto refused = problems(one_state(.5, .1, .1), gain_plants::gain(type));
-    REQUIRE(refused.size() == 1);
-    CHECK(refused[0].pointer == "/gain");
-    CHECK(refused[0].message.find(type) != std::string::npos);
-    CHECK(refused[0].suggestion.find("w_radius") != std::string::npos);
-  }
+TEST_CASE("a designer that knows the predictor's form only is refused, with others to take") {
+  class Other final : public GainDesigner {
+    GainDesign do_design(const Model& model) const override {
+      GainDesign made;
+      made.feasible = Answer::yes;
+      made.gain.L = Matrix::Zero(model.states(), model.outputs());
+      return made;
+    }
+  };
+  Plugins own;
+  own.registry.add([](Registrar& registrar) {
+    registrar.add(
+        GainEntry{{"other", "none", "", {}},
+                  [](const GainContext&, const Params&) { return std::vector<Diagnostic>{}; },
+                  [](const Params&) { return std::make_unique<Other>(); }});
+  });
+  const auto refused = own.registry.check<ObserverEntry>(
+      "gain_correction", {one_state(.5, .1, .1), own.backend("zonotope")},
+      gain_plants::gain("other"));
+  REQUIRE(refused.size() == 1);
+  CHECK(refused[0].pointer == "/gain");
+  CHECK(refused[0].message.find("other") != std::string::npos);
+  CHECK(refused[0].suggestion.find("w_radius") != std::string::npos);
 }
