@@ -13,6 +13,7 @@
 #include "cordon/sets/outward.hpp"
 #include "cordon/solvers/outward_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "cordon/solvers/view_questions.hpp"
 #include "rounding_parameter.hpp"
 
 namespace {
@@ -85,6 +86,8 @@ struct Ellipsoids {
     const sets::Zonotope box = sets::principal_box(*X.ellipsoid());
     return make_zonotope(box.c, box.G);
   }
+  /// What was imported is held as it is; an ellipsoid is not of the form.
+  bool has_exact_form(const Value& X) const { return !X.ellipsoid(); }
   Complexity complexity(const Value& X) const {
     if (const Given* given = X.given())
       return {given->form.generators(), 0, given->form.constraints()};
@@ -106,6 +109,15 @@ struct Ellipsoids {
     const Given& given = *X.given();
     return given.is_zonotope() ? sets::support(given.zonotope(), d)
                                : cordon::outward::support(given.form, d, why);
+  }
+  Vector maximizer(const Value& X, VectorIn d) const {
+    const Ellipsoid* E = X.ellipsoid();
+    if (!E) return cordon::maximizer(line_form(X), d);
+    const Vector along = linalg::transposed_product(E->L, d);
+    const double length = along.norm();
+    Vector x = E->c + E->r.cwiseProduct(Vector(d).cwiseSign());
+    if (length > 0) x += linalg::product(E->L, Vector(along / length));
+    return x;
   }
   Box interval_hull(const Value& X, std::vector<Certificate>* why) const {
     if (X.given() && !X.given()->is_zonotope())

@@ -25,9 +25,9 @@ void add(Registrar& registrar, const Mutant& mutant) {
 }
 
 void register_components(Registrar& registrar) {
-  for (const auto& group :
-       {mutants::controls(), mutants::mutants_of_operations(), mutants::mutants_of_claims(),
-        mutants::mutants_of_questions(), mutants::mutants_of_contract()}) {
+  for (const auto& group : {mutants::controls(), mutants::mutants_of_operations(),
+                            mutants::mutants_of_claims(), mutants::mutants_of_questions(),
+                            mutants::mutants_of_views(), mutants::mutants_of_contract()}) {
     for (const Mutant& mutant : group) add(registrar, mutant);
   }
 }

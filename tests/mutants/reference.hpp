@@ -100,6 +100,7 @@ std::vector<Mutant> controls();
 std::vector<Mutant> mutants_of_operations();
 std::vector<Mutant> mutants_of_claims();
 std::vector<Mutant> mutants_of_questions();
+std::vector<Mutant> mutants_of_views();
 std::vector<Mutant> mutants_of_contract();
 
 }  // namespace mutants

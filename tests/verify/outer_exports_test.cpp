@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -72,5 +73,44 @@ TEST_CASE("estimates by ellipsoids are no violation, compared exactly or along d
     CHECK(verified.code == (states == 2 ? 0 : 5));
     CHECK(verified.out.find("violated") == std::string::npos);
   }
+  fs::remove_all(home);
+}
+
+TEST_CASE("support values of ellipsoids are recorded, and held against the exact states") {
+  const fs::path home = fs::temp_directory_path() / "cordon_support_values";
+  fs::remove_all(home);
+  fs::create_directories(home);
+  std::ofstream(home / "study.json") << chain(2, 6).dump();
+  const std::string out = (home / "out").string();
+  REQUIRE(
+      test::cordon_with("run --quiet --out " + out + " " + (home / "study.json").string()).code ==
+      0);
+  std::vector<Json> rows;
+  std::ifstream file(home / "out" / "sets.jsonl");
+  for (std::string line; std::getline(file, line);) rows.push_back(Json::parse(line));
+  file.close();
+  REQUIRE(rows.size() == 6);
+  CHECK(rows[5]["exchange"] == "outer");
+  REQUIRE(rows[5].contains("H"));
+  CHECK(rows[5]["H"].size() >= 8);  // an ellipse in its box, in sixteen directions
+  CHECK(rows[5]["H"].size() == rows[5]["h"].size());
+  fs::remove(home / "out" / "manifest.json");
+  const auto write = [&] {
+    std::ofstream again(home / "out" / "sets.jsonl");
+    for (const Json& row : rows) again << row.dump() << "\n";
+  };
+  write();
+  CHECK(test::cordon_with("verify " + out + " 2>&1").code == 0);
+  const double along = rows[5]["H"][0][0].get<double>() * rows[5]["c"][0].get<double>() +
+                       rows[5]["H"][0][1].get<double>() * rows[5]["c"][1].get<double>();
+  rows[5]["h"][0] = along - .02;  // through the middle
+  write();
+  const auto refuted = test::cordon_with("verify " + out + " 2>&1");
+  CAPTURE(refuted.out);
+  CHECK(refuted.code == 4);
+  CHECK(refuted.out.find("the reported set only") != std::string::npos);
+  rows[5]["h"].erase(0);  // a row fewer than H has
+  write();
+  CHECK(test::cordon_with("verify " + out + " 2>&1").code == 2);
   fs::remove_all(home);
 }

@@ -50,7 +50,7 @@ Operand import_operand(const Context& context, const TestSet& X) {
   operand.sure = !X.empty && operand.set.tightness == Tightness::exact &&
                  (plain || describe(operand.set->line_form()) == describe(X.form));
   operand.set.tightness = Tightness::exact;
-  operand.equal = context.exact_exchange();
+  operand.equal = operand.set->has_exact_form();
   operand.form = operand.equal ? operand.set->line_form() : X.form;
   Random random(seed_of(1, X.name, X.form.generators()));
   operand.points = points_of(X.form, X.delta, X.xi, random, 3);
@@ -92,9 +92,9 @@ Verdict encloses(const Context& context, const Enclosure& result, Truth& truth,
   return {};
 }
 
-Verdict stays_within(const Context& context, const Enclosure& result, Truth& truth,
+Verdict stays_within(const Context& /*context*/, const Enclosure& result, Truth& truth,
                      const TestCase& test) {
-  if (result.tightness != Tightness::exact || !context.exact_exchange())
+  if (result.tightness != Tightness::exact || !result->has_exact_form())
     return Verdict::inapplicable();
   const LineForm form = result->line_form();
   Reference found(form);

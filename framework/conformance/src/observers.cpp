@@ -149,7 +149,7 @@ Verdict check_follows(const Context& context, const TestCase& test) {
     if (k == 0) continue;
     const LineForm before = estimates[k - 1].set->line_form();
     if (before.generators() > 10 || before.constraints() > 3) continue;
-    if (!estimates[k - 1].set->backend().info().exact_exchange) continue;
+    if (!estimates[k - 1].set->has_exact_form()) continue;
     const auto next = feasible_successors(trial->model, before, trial->data.samples[k - 1],
                                           trial->data.samples[k]);
     if (!next || next->is_empty()) continue;
