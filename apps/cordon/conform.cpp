@@ -319,7 +319,7 @@ CORDON_COMMAND(conform) {
       ->option_text("GLOB");
   command->add_option("--seed", arguments->seed, "Of the random cases [1]")->option_text("N");
   command
-      ->add_option("--cases", arguments->cases, "Cases per law; expensive laws take a share [100]")
+      ->add_option("--cases", arguments->cases, "Cases per law; expensive laws take a share [80]")
       ->check(CLI::Range(Index{1}, Index{1'000'000}))
       ->option_text("N");
   command

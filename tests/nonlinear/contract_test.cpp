@@ -55,3 +55,19 @@ TEST_CASE("a contradiction is explained by formulas, too") {
     CHECK(observer->contradiction()->distance == doctest::Approx(2));
   }
 }
+
+TEST_CASE("strips follow the sets that they tell, where these are the zonotopes that they hold") {
+  Json system = {{"states", {"x", "y"}}};
+  system["f"] = {"x", "y"};
+  system["g"] = {"x - y"};
+  system["X0"] = {{"center", {0, 0}}, {"generators", {{1.0, 0.0}, {0.0, 1.0}}}};
+  system["W"] = system["V"] = {{"center", {0}}, {"generators", {{0.0}}}};
+  Model model = model_of(system);
+  model.W = model.V = make_point(Vector(0));
+  for (const char* backend : {"interval", "zonotope", "constrained_zonotope"}) {
+    CAPTURE(std::string(backend));
+    const auto observer = examples::registry().make<ObserverEntry>(
+        "nonlinear_strips", {model, examples::backend(backend)}, Params{});
+    CHECK(observer->follows_its_sets() == (std::string(backend) != "interval"));
+  }
+}

@@ -30,6 +30,11 @@ Model represented(const Model& model, const SetBackend& backend) {
   return made;
 }
 
+bool holds_zonotopes(const SetBackend& backend) {
+  const Matrix slanted{{1, 1}, {0, 1}};
+  return backend.import(make_zonotope(Vector::Zero(2), slanted)).tightness == Tightness::exact;
+}
+
 class StripObserver final : public Observer {
  public:
   StripObserver(const ObserverContext& context, const Params& params)
@@ -42,7 +47,10 @@ class StripObserver final : public Observer {
 
   LineForm initial_set() const override { return X0_; }
   Tightness claim() const override { return Tightness::outer; }
-  bool follows_its_sets() const override { return uses_outputs_of_its_time(); }
+  /// A representation that encloses its zonotopes is told more than the recursion goes on with.
+  bool follows_its_sets() const override {
+    return uses_outputs_of_its_time() && (model().states() == 1 || holds_zonotopes(backend()));
+  }
   bool takes_missing_outputs() const override { return true; }
   bool uses_outputs_of_its_time() const override { return variant_ != StripVariant::frad_c; }
 

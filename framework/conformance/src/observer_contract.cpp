@@ -183,7 +183,7 @@ ObserverTrial in_units(const Context& context, const ObserverTrial& trial, const
   if (!trial.given.is_linear()) other.given = with_formulas(other.model, nullptr);
   const auto problems = context.registry().check<ObserverEntry>(
       context.subject.component, {other.given, other.backend.backend}, other.params);
-  if (problems.empty()) other.observer = another(context, other);
+  other.observer = problems.empty() ? another(context, other) : nullptr;
   return other;
 }
 

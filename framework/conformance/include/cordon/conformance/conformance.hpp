@@ -51,7 +51,7 @@ struct Subject {
 struct Options {
   std::string laws = "*";  ///< pattern of names
   std::uint64_t seed = 1;
-  Index cases = 100;  ///< per law; expensive laws take a share of it
+  Index cases = 80;  ///< per law; expensive laws take a share of it
 };
 
 enum class Status {
