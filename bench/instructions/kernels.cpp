@@ -12,6 +12,8 @@
 #include "cordon/study/data.hpp"
 #include "cordon/study/study.hpp"
 #include "random_set.hpp"
+#include "registry.hpp"
+#include "three_states.hpp"
 
 namespace {
 
@@ -76,12 +78,40 @@ void steps_of_main_study() {
   });
 }
 
+/// A hundred steps of an observer with a gain, with the questions that each asks; the sets have
+/// settled before.
+void steps_with_gain(const std::string& name, const std::string& backend, bool steady) {
+  Params sets, params;
+  if (backend != "interval") {
+    sets.set("reduction", std::string("girard"));
+    params.set("max_generators", std::int64_t{20});
+  }
+  params.set("gain", std::make_shared<const ComponentSpec>(
+                         ComponentSpec{"kalman", Params().set("steady", steady)}));
+  const auto observer = registry().make<ObserverEntry>(
+      name, {three_states(), registry().make<BackendEntry>(backend, sets)}, params);
+  Sample now{0, Vector::Constant(1, .01), Vector::Constant(2, .02)};
+  for (; now.k < 200; ++now.k) observer->step(now);
+  counted([&] {
+    double found = 0;
+    for (; now.k < 300; ++now.k)
+      found += static_cast<double>(observer->step(now).consistent == Answer::yes);
+    return found;
+  });
+}
+
 const std::map<std::string, void (*)()> kernels{
     {"interval_hull", interval_hull_of_set},
     {"emptiness", emptiness_of_both_kinds},
     {"containment", containment_near_boundary},
     {"constraint_elimination", constraint_elimination_to_5},
-    {"line_zonotope_steps", steps_of_main_study}};
+    {"line_zonotope_steps", steps_of_main_study},
+    {"luenberger", [] { steps_with_gain("luenberger", "zonotope", true); }},
+    {"error_hull", [] { steps_with_gain("error_hull", "interval", true); }},
+    {"gain_correction", [] { steps_with_gain("gain_correction", "zonotope", true); }},
+    {"gain_correction_kalman", [] { steps_with_gain("gain_correction", "zonotope", false); }},
+    {"gain_correction_constrained",
+     [] { steps_with_gain("gain_correction", "constrained_zonotope", true); }}};
 
 }  // namespace
 

@@ -23,8 +23,22 @@ constexpr double least_condition =
     1e-12;  // below this share of its largest eigenvalue, the smallest one of S is rounding
 
 Matrix covariation(const Matrix& T, const LineForm& X, const char* name) {
-  const Matrix shape = linalg::product(T, invariant::enclosing_zonotope(X, name).G);
-  return linalg::product(shape, shape.transpose());
+  if (X.lines() == 0 && X.constraints() == 0) return linalg::gram(linalg::product(T, X.G));
+  return linalg::gram(linalg::product(T, invariant::enclosing_zonotope(X, name).G));
+}
+
+/// Is the smallest eigenvalue of S = Sᵀ ⪰ 0 above a share of the largest one? The largest is not
+/// above the trace, and the smallest not below det S / (tr S)^(n-1), which tells nearly always.
+bool is_conditioned(const Matrix& S) {
+  constexpr double certain = 1e3 * least_condition;  // whatever rounding does to the determinant
+  const double trace = S.trace();
+  double share = 1;
+  if (const std::optional<Matrix> root = linalg::cholesky(S); root && trace > 0) {
+    for (const double pivot : root->diagonal()) share *= pivot * pivot / trace;
+    if (share > certain) return true;
+  }
+  const Vector values = linalg::symmetric_eigen(S).values;
+  return values[0] > least_condition * values[values.size() - 1];
 }
 
 double largest(const Matrix& A) { return A.size() == 0 ? 0.0 : A.cwiseAbs().maxCoeff(); }
@@ -39,9 +53,7 @@ Matrix kalman_gain(const Model& model, MatrixIn P) {
   if (m.outputs() == 0) return Matrix(m.states(), 0);
   const Matrix C = mean_outputs(m), PCt = linalg::product(P, C.transpose());
   Matrix S = linalg::product(C, PCt) + covariation(m.Dv, model.V, "V");
-  const Vector values = linalg::symmetric_eigen(S).values;
-  if (!(values[0] > least_condition * values[values.size() - 1]))
-    S.diagonal().array() += floor_of(largest(S));
+  if (!is_conditioned(S)) S.diagonal().array() += floor_of(largest(S));
   const std::optional<Matrix> gain = linalg::solve_spd(S, linalg::product(m.A, PCt).transpose());
   if (!gain || !gain->allFinite())
     throw Error(Errc::not_finite, "no Kalman gain: the set of states is too large");

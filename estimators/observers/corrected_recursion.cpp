@@ -46,7 +46,9 @@ Enclosure CorrectedRecursion::predicted(const Enclosure& X, const StackStep& ste
   const Matrix spread = effectiveness_.input_spread(step.B, u);
   const Enclosure open =
       effectiveness_.has_open_states() ? effectiveness_.open_states(X, u) : Enclosure{};
-  std::vector<Term> terms{{step.Bw, W_}};
+  std::vector<Term> terms;
+  terms.reserve(5);
+  terms.push_back({step.Bw, W_});
   if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
   if (effectiveness_.has_open_states()) terms.push_back({step.newest, open});
   const bool as_set = effectiveness_.inputs_enter_as_sets() && model_.inputs() > 0;
@@ -71,7 +73,8 @@ Enclosure CorrectedRecursion::predicted(const Enclosure& X, const StackStep& ste
 }
 
 RoundingRoom CorrectedRecursion::room_of(const Vector& Bu, VectorIn u) const {
-  const Vector terms = effectiveness_.input_terms(model_.linear.B, u) + disturbance_.cwiseAbs();
+  Vector terms = effectiveness_.input_terms(model_.linear.B, u);
+  terms += disturbance_.cwiseAbs();
   return {backend_, Bu + disturbance_, terms, thickness_};
 }
 

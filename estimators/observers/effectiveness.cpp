@@ -76,7 +76,7 @@ void Effectiveness::input(MatrixIn B, VectorIn u, Vector& image) const {
 }
 
 Vector Effectiveness::input_terms(MatrixIn B, VectorIn u) const {
-  return linalg::product(B.cwiseAbs(), f_.cwiseProduct(u).cwiseAbs());
+  return B.cwiseAbs().lazyProduct(f_.cwiseProduct(u).cwiseAbs());
 }
 
 bool Effectiveness::inputs_enter_as_sets() const {

@@ -29,13 +29,16 @@ struct PointStep {
   Matrix X, U, Y, V;
   Vector w;
 
-  Vector operator()(VectorIn x, VectorIn u_before, VectorIn y, VectorIn u_now) const {
-    Vector sum = w;
-    sum += X * x;
-    sum += U * u_before;
-    sum += Y * y;
-    if (V.size() > 0) sum += V * u_now;
-    return sum;
+  /// Into `sum`, of which none of the others is a part: products entry by entry, since there are
+  /// few of them, and no vector is made for them.
+  template <class State, class Before, class Output, class Now>
+  void add_up(const State& x, const Before& u_before, const Output& y, const Now& u_now,
+              Vector& sum) const {
+    sum = w;
+    sum += X.lazyProduct(x);
+    sum += U.lazyProduct(u_before);
+    sum += Y.lazyProduct(y);
+    if (V.size() > 0) sum += V.lazyProduct(u_now);
   }
 };
 
@@ -159,18 +162,21 @@ class ErrorHullObserver final : public Observer {
 
   /// Moves x to the next time; by how much rounding can have moved it.
   Vector moved(const ErrorStep& step, VectorIn u_before, const Sample& used) {
-    const Sample all = used.is_complete() ? Sample{} : without_missing(used);
-    const Vector& y = used.is_complete() ? used.y : all.y;
-    const Vector size =
-        step.sizes(x_.cwiseAbs(), u_before.cwiseAbs(), y.cwiseAbs(), used.u.cwiseAbs());
-    x_ = step.point(x_, u_before, y, used.u);
-    return 2 * share_ * size;
+    const Vector present = used.is_complete() ? Vector() : without_missing(used).y;
+    const Vector& y = used.is_complete() ? used.y : present;
+    Vector size;
+    step.sizes.add_up(x_.cwiseAbs(), u_before.cwiseAbs(), y.cwiseAbs(), used.u.cwiseAbs(), size);
+    step.point.add_up(x_, u_before, y, used.u, next_);
+    x_.swap(next_);
+    size *= 2 * share_;
+    return size;
   }
 
   Enclosure estimate() const {
-    const Vector half = widths_.half_widths() + off_.bound();
-    const Vector room = 4 * rounding::unit * (half + x_.cwiseAbs());
-    Enclosure box = backend().box({x_ - half - room, x_ + half + room});
+    Vector half = widths_.half_widths();
+    half += off_.bound();
+    half += 4 * rounding::unit * (half + x_.cwiseAbs());
+    Enclosure box = backend().box({x_ - half, x_ + half});
     box.tightness = Tightness::outer;
     return box;
   }
@@ -181,7 +187,7 @@ class ErrorHullObserver final : public Observer {
   ErrorStep complete_;
   PerOutputs<ErrorStep> others_;
   double share_;
-  Vector x_;
+  Vector x_, next_;  ///< next_: memory for the next one
   ErrorMemory off_;  ///< what the numbers of x are off by
   ErrorWidths widths_;
 };

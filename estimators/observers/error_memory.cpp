@@ -42,6 +42,10 @@ void ErrorMemory::step(VectorIn sizes) {
   steps_ = 0;
 }
 
-Vector ErrorMemory::bound() const { return largest_ * past_ + sum_ * now_; }
+Vector ErrorMemory::bound() const {
+  Vector bound = largest_.lazyProduct(past_);
+  bound += sum_.lazyProduct(now_);
+  return bound;
+}
 
 }  // namespace cordon::estimators

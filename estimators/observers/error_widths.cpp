@@ -60,7 +60,10 @@ void ErrorWidths::start(const Rounded& R) {
 /// At least |Z| 1.
 Vector ErrorWidths::sum_of(const Columns& Z) const {
   if (Z.value.cols() == 0) return Z.past;
-  return Vector(Z.value.cwiseAbs().rowwise().sum()) + Z.off.bound() + Z.past;
+  Vector sum = Z.value.cwiseAbs().rowwise().sum();
+  sum += Z.off.bound();
+  sum += Z.past;
+  return sum;
 }
 
 void ErrorWidths::move_on(Columns& Z) const {

@@ -61,8 +61,8 @@ LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L,
   const Vector &w = around_W.c, &v = around_V.c;
   W_generators_ = around_W.G;
   V_generators_ = around_V.G;
-  W_size_ = w.cwiseAbs() + W_generators_.cwiseAbs().rowwise().sum();
-  V_size_ = v.cwiseAbs() + V_generators_.cwiseAbs().rowwise().sum();
+  disturbance_terms_ = Bw_.cwiseAbs() * (w.cwiseAbs() + W_generators_.cwiseAbs().rowwise().sum());
+  noise_terms_ = Dv_.cwiseAbs() * (v.cwiseAbs() + V_generators_.cwiseAbs().rowwise().sum());
   state_drift_ = product(Bw_, w);
   v_ = product(Dv_, v);
   W_ = backend_->import(model.W);
@@ -107,9 +107,13 @@ void LuenbergerRecursion::use_gain(Matrix L) {
 /// Magnitudes of what A - L C̄, L Dv and the sums of X̂⁺ are made of, and their largest.
 void LuenbergerRecursion::take_sizes() {
   y_terms_ = L_.cwiseAbs();
-  x_terms_ = A_.cwiseAbs() + y_terms_ * C_.cwiseAbs();
-  u_terms_ = (B_.cwiseAbs() + y_terms_ * D_.cwiseAbs()) * f_.cwiseAbs().asDiagonal();
-  constant_terms_ = Bw_.cwiseAbs() * W_size_ + y_terms_ * (Dv_.cwiseAbs() * V_size_);
+  x_terms_ = A_.cwiseAbs();
+  x_terms_ += y_terms_.lazyProduct(C_.cwiseAbs());
+  u_terms_ = B_.cwiseAbs();
+  u_terms_ += y_terms_.lazyProduct(D_.cwiseAbs());
+  u_terms_ *= f_.cwiseAbs().asDiagonal();
+  constant_terms_ = disturbance_terms_;
+  constant_terms_ += y_terms_.lazyProduct(noise_terms_);
   x_norm_ = row_norm(x_terms_);
   y_norm_ = row_norm(y_terms_);
   u_norm_ = row_norm(u_terms_);
@@ -212,7 +216,8 @@ Enclosure LuenbergerRecursion::next(const Enclosure& X, const Sample& now, Vecto
   summands.terms.push_back({minus_LDv_, V_});
   summands.terms.push_back({Bw_, W_});
   add_open(summands, Target::state, X, now.u, false);
-  const Vector shift = product(L_, now.y) + product(input_, now.u);
+  Vector shift = L_.lazyProduct(now.y);
+  shift += input_.lazyProduct(now.u);
   const std::optional<RoundingRoom> room = room_of(X, shift, now, hull);
   if (room && room->is_needed()) {
     summands.terms.push_back(room->term());
@@ -236,7 +241,11 @@ Vector LuenbergerRecursion::next(VectorIn x, const Sample& now) const {
 }
 
 Vector LuenbergerRecursion::residual(VectorIn x, const Sample& now) const {
-  return now.y - product(output_input_, now.u) - product(C_, x) - v_;
+  Vector rest = now.y;
+  rest -= output_input_.lazyProduct(now.u);
+  rest -= C_.lazyProduct(x);
+  rest -= v_;
+  return rest;
 }
 
 Vector LuenbergerRecursion::next_size(VectorIn x, const Sample& now) const {

@@ -102,16 +102,16 @@ class LuenbergerRecursion {
   Matrix ranges_, output_ranges_;  ///< their columns of (B - L D̄) rad(f) and D̄ rad(f)
   Matrix Bw_, minus_Bw_, Dv_, minus_Dv_, minus_LDv_;
   Matrix state_unit_, output_unit_;
-  Enclosure W_, V_, W0_, V0_;           ///< W0, V0: moved by -w̄, -v̄
-  Matrix W_generators_, V_generators_;  ///< of zonotopes around W and V
-  Enclosure unit_;                      ///< [-1,1] to the power of `ranged_`
-  Vector state_drift_, w_, v_;          ///< Bw w̄, Bw w̄ - L Dv v̄, Dv v̄
-  Matrix x_terms_, y_terms_, u_terms_;  ///< |A| + |L||C̄|, |L|, (|B| + |L||D̄|) f̄
-  Vector W_size_, V_size_;              ///< of the entries of w and v
-  Vector constant_terms_;               ///< sizes of Bw W and L Dv V
-  Thickness W_thickness_, thickness_;   ///< of Bw W; of Bw W ⊕ (-L Dv V), or as that of Bw W
-  Matrix held_, thick_L_;               ///< L for which `thickness_` was found, with `held_`
-  Vector output_size_;                  ///< of C̄ held and Dv V
+  Enclosure W_, V_, W0_, V0_;               ///< W0, V0: moved by -w̄, -v̄
+  Matrix W_generators_, V_generators_;      ///< of zonotopes around W and V
+  Enclosure unit_;                          ///< [-1,1] to the power of `ranged_`
+  Vector state_drift_, w_, v_;              ///< Bw w̄, Bw w̄ - L Dv v̄, Dv v̄
+  Matrix x_terms_, y_terms_, u_terms_;      ///< |A| + |L||C̄|, |L|, (|B| + |L||D̄|) f̄
+  Vector disturbance_terms_, noise_terms_;  ///< sizes of Bw W and Dv V
+  Vector constant_terms_;                   ///< sizes of Bw W and L Dv V
+  Thickness W_thickness_, thickness_;       ///< of Bw W; of Bw W ⊕ (-L Dv V), or as that of Bw W
+  Matrix held_, thick_L_;                   ///< L for which `thickness_` was found, with `held_`
+  Vector output_size_;                      ///< of C̄ held and Dv V
   double x_norm_ = 0, y_norm_ = 0, u_norm_ = 0, constant_norm_ = 0;
   Matrix raw_C_, raw_D_;                   ///< C and |D| max f, for Δ
   Vector sensor_radius_;                   ///< no entries: exact sensors

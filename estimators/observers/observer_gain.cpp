@@ -93,8 +93,11 @@ Matrix gain_for(const ObserverGain& gain, const Model& model, const Enclosure& X
                 const Matrix& steady) {
   if (model.linear.outputs() == 0) return steady;
   try {
-    const Matrix R = invariant::enclosing_zonotope(X->line_form(), "the estimate").G;
-    return gain.designer->update(model, linalg::product(R, R.transpose()));
+    const LineForm form = X->line_form();
+    const bool is_zonotope = form.lines() == 0 && form.constraints() == 0;
+    return gain.designer->update(
+        model, is_zonotope ? linalg::gram(form.G)
+                           : linalg::gram(invariant::enclosing_zonotope(form, "the estimate").G));
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported && error.code() != Errc::invalid) throw;
     return steady;

@@ -59,13 +59,15 @@ RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn ter
                            const Thickness& thickness)
     : backend_(backend) {
   std::vector<Index> rows;
-  Vector room = Vector::Zero(sum.size());
   for (Index i = 0; i < sum.size() && backend.info().rounding == Rounding::nominal; ++i) {
-    if (std::abs(sum[i]) >= cancelled * terms[i]) continue;
-    rows.push_back(i);  // NaN, of terms that overflow, is left to the backend's refusal
-    room[i] = share * terms[i];
+    // NaN, of terms that overflow, is left to the backend's refusal
+    if (!(std::abs(sum[i]) >= cancelled * terms[i])) rows.push_back(i);
   }
-  if (!rows.empty() && thickness.share_of(room) <= negligible) rows.clear();
+  if (!rows.empty()) {
+    Vector room = Vector::Zero(sum.size());
+    for (const Index i : rows) room[i] = share * terms[i];
+    if (thickness.share_of(room) <= negligible) rows.clear();
+  }
   make(rows, terms);
 }
 

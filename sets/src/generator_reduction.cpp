@@ -95,11 +95,12 @@ ReductionBox along_coordinates(const Matrix& G, Index max_generators, Size size)
 }
 
 /// Radii per coordinate need no rotation, and none is left out.
-Matrix boxed(const ReductionBox& box) {
-  const Index n = box.dim();
-  Matrix H(n, box.kept + n);
-  H << box.sorted.leftCols(box.kept), box_radii(box.replaced()).asDiagonal().toDenseMatrix();
-  return nonzero_columns(H);
+Matrix boxed(const Matrix& sorted, Index max_generators) {
+  const Index n = sorted.rows(), kept = std::min(max_generators - n, sorted.cols());
+  Matrix H = Matrix::Zero(n, kept + n);
+  H.leftCols(kept) = sorted.leftCols(kept);
+  H.rightCols(n).diagonal() = box_radii(sorted.rightCols(sorted.cols() - kept));
+  return without_zero_columns_of(std::move(H));
 }
 
 /// Rows whose largest entries differ by up to 2¹⁶, from the largest downwards. Axes are sought
@@ -208,11 +209,16 @@ Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction me
                                    std::to_string(G.rows()));
   }
   require_finite(G, "generator reduction", "the generator matrix");
-  if (count_nonzero_columns(G) <= max_generators) return nonzero_columns(G);
+  const Index count = count_nonzero_columns(G);
+  if (count <= max_generators) return nonzero_columns(G);
   switch (method) {
     case GeneratorReduction::girard:
-    case GeneratorReduction::combastel:
-      return boxed(box_of(nonzero_columns(G), max_generators, method));
+    case GeneratorReduction::combastel: {
+      const Size size =
+          method == GeneratorReduction::girard ? Size::norm_1_minus_max : Size::norm_2;
+      if (count == G.cols()) return boxed(sorted_by_size(G, size), max_generators);
+      return boxed(sorted_by_size(nonzero_columns(G), size), max_generators);
+    }
     case GeneratorReduction::pca:
     case GeneratorReduction::qr:
       return box_of(nonzero_columns(G), max_generators, method).reduced();

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <utility>
+
 #include "cordon/core/types.hpp"
 
 namespace cordon::sets {
 
 inline bool is_zero_column(MatrixIn G, Index j) {
+  const double* const column = G.data() + j * G.outerStride();
   for (Index i = 0; i < G.rows(); ++i) {
-    if (G(i, j) != 0) return false;
+    if (column[i] != 0) return false;
   }
   return true;
 }
@@ -30,6 +33,11 @@ inline Matrix nonzero_columns(MatrixIn G) {
   Matrix kept;
   take_nonzero_columns(G, kept);
   return kept;
+}
+
+/// The same of a matrix that is not needed any more.
+inline Matrix without_zero_columns_of(Matrix G) {
+  return count_nonzero_columns(G) == G.cols() ? std::move(G) : nonzero_columns(G);
 }
 
 }  // namespace cordon::sets

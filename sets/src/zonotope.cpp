@@ -177,14 +177,25 @@ Zonotope interval_map(const Zonotope& Z, const IntervalMatrix& A) {
 
 Box interval_hull(const Zonotope& Z) {
   check(Z, "interval hull of a zonotope");
-  if (Z.generators() == 0) return {Z.c, Z.c};
-  Box hull{Vector(Z.dim()), Vector(Z.dim())};
-  for (Index i = 0; i < Z.dim(); ++i) {
-    const double center = Z.c[i];
-    const bool flat = (Z.G.row(i).array() == 0).all();
-    const double radius = flat ? 0.0 : rounding::norm_1(Z.G.row(i).transpose()).upper;
-    hull.lower[i] = flat ? center : rounding::down(center - radius);
-    hull.upper[i] = flat ? center : rounding::up(center + radius);
+  const Index n = Z.dim();
+  Vector sums = Vector::Zero(n), terms = Vector::Zero(n);  // of the rows: what is not 0
+  const double* entry = Z.G.data();
+  for (Index j = 0; j < Z.generators(); ++j) {
+    for (Index i = 0; i < n; ++i) {
+      const double size = std::abs(*entry++);
+      sums[i] += size;
+      terms[i] += size > 0 ? 1 : 0;
+    }
+  }
+  Box hull{Z.c, Z.c};
+  for (Index i = 0; i < n; ++i) {
+    if (terms[i] == 0) continue;
+    // as rounding::norm_1 of the row; a single term is not rounded
+    const double lost =
+                     rounding::up(rounding::gamma(2 * static_cast<Index>(terms[i]) + 2) * sums[i]),
+                 radius = terms[i] == 1 ? sums[i] : rounding::up(sums[i] + lost);
+    hull.lower[i] = rounding::down(Z.c[i] - radius);
+    hull.upper[i] = rounding::up(Z.c[i] + radius);
   }
   return hull;
 }
