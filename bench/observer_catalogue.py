@@ -14,6 +14,7 @@ FAMILIES = [  # first words of a pipeline's name, what the figure calls it, colo
     (("zonotope",), "zonotopes cut by strips", "#d55e00", "circle"),
     (("gain_correction", "error_hull"), "gains, outputs up to now", "#009e73", "circle"),
     (("luenberger",), "gains, outputs up to the time before", "#8a6bb1", "square"),
+    (("ellipsoid",), "ellipsoids", "#c04f8e", "square"),
     (("boxes",), "boxes", "#5b6573", "circle"),
 ]
 PLANTS = ("2dim", "vehicle_2", "three_states")
@@ -100,7 +101,7 @@ def figure(found):
     for _, words, colour, shape in FAMILIES:
         yield mark(shape, x + 4, high - 18, colour)
         yield text(x + 13, high - 14, words, "start")
-        x += 28 + 5.2 * len(words)
+        x += 24 + 5 * len(words)
     yield "</svg>"
 
 

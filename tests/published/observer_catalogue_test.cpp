@@ -100,6 +100,8 @@ TEST_CASE("widths of observers that intersect") {
               {"zonotope bravo 30", {1.13, 1.25, 2.12}},
               {"zonotope bravo n", {1.13, 1.25, 2.12}},
               {"zonotope segment 30", {1.26, 1.38, 3.00}},
+              {"ellipsoid trace", {1.42, 3.47, 3.13}},
+              {"ellipsoid volume", {1.89, 3.49, 3.95}},
               {"boxes", {25.8, 3.72, 8.42}}});
   // not told elsewhere
   check_rows({{"constrained 20/5 adaptive", {1.00, 1.53, 1.30}}});
