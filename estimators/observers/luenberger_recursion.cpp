@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/interval.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "observers/interval_spread.hpp"
@@ -21,6 +22,20 @@ LineForm moved(const LineForm& X, const Vector& t) {
   LineForm Y = X;
   Y.c += t;
   return Y;
+}
+
+/// The hull of X with what X takes up apart from its lines in place of sides without an end: the
+/// numbers that are computed with.
+Box without_lines(const Set& X, Box hull) {
+  if (hull.is_bounded() || hull.is_empty()) return hull;
+  const LineForm form = X.line_form();
+  const Vector widths = form.G.cwiseAbs().rowwise().sum();
+  for (Index i = 0; i < hull.dim(); ++i) {
+    if (std::isfinite(hull.lower[i]) && std::isfinite(hull.upper[i])) continue;
+    hull.lower[i] = form.c[i] - widths[i];
+    hull.upper[i] = form.c[i] + widths[i];
+  }
+  return hull;
 }
 
 Vector largest_entries(const Box& box) {
@@ -135,18 +150,42 @@ void LuenbergerRecursion::take_thickness() {
   thick_L_ = L_;
 }
 
+/// ∞ in rows of A - L C̄ that were rounded in a column along which X̂ has no end: what that does to
+/// them has no bound. 0 in others.
+Vector LuenbergerRecursion::lost_rows(const Box& reach) const {
+  Vector lost = Vector::Zero(A_.rows());
+  for (Index j = 0; j < A_.cols(); ++j) {
+    if (std::isfinite(reach.lower[j]) && std::isfinite(reach.upper[j])) continue;
+    for (Index i = 0; i < A_.rows(); ++i) {
+      Interval entry{A_(i, j), A_(i, j)};
+      for (Index k = 0; k < C_.rows(); ++k) entry = entry - directed::times(L_(i, k), C_(k, j));
+      if (!(entry.is_point() && entry.lower == Ao_(i, j))) lost[i] = infinity;
+    }
+  }
+  return lost;
+}
+
 std::optional<RoundingRoom> LuenbergerRecursion::room_of(const Enclosure& X, VectorIn shift,
                                                          const Sample& now, const Box* hull) const {
   const bool outward = backend_->info().rounding == Rounding::outward;
-  const Box own = hull ? Box{} : reach_of(*X), &reach = hull ? *hull : own;
+  Box own = hull ? Box{} : reach_of(*X);
+  Vector lost;
+  if (!(hull ? *hull : own).is_bounded()) {
+    own = X->interval_hull();
+    if (outward) lost = lost_rows(own);
+    own = without_lines(*X, std::move(own));
+    hull = nullptr;
+  }
+  const Box& reach = hull ? *hull : own;
   const auto largest = [](VectorIn v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0.0; };
   const double most_x = std::max(largest(reach.lower), largest(reach.upper));
   if (!std::isfinite(most_x) || reach.is_empty()) return std::nullopt;
   const double most =
       x_norm_ * most_x + y_norm_ * largest(now.y) + u_norm_ * largest(now.u) + constant_norm_;
   if (!outward && !RoundingRoom::may_be_needed(most, thickness_)) return std::nullopt;
-  const Vector terms = x_terms_ * largest_entries(reach) + y_terms_ * now.y.cwiseAbs() +
-                       u_terms_ * now.u.cwiseAbs() + constant_terms_;
+  Vector terms = x_terms_ * largest_entries(reach) + y_terms_ * now.y.cwiseAbs() +
+                 u_terms_ * now.u.cwiseAbs() + constant_terms_;
+  if (lost.size() > 0) terms += lost;
   if (outward) return std::optional<RoundingRoom>(std::in_place, *backend_, terms);
   if (!RoundingRoom::may_be_needed(terms, thickness_)) return std::nullopt;
   const Vector sum = shift + w_ + product(Ao_, reach.center());

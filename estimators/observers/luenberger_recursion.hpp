@@ -22,8 +22,9 @@ namespace cordon::estimators {
 /// max g rad(C) |x|, x ∈ X̂; they are {0} for exact matrices and exactly known sensors. x ∈ X̂
 /// implies x⁺ ∈ X̂⁺ and 0 ∈ R. A diag per input: a single column rad(f) u would tie the inputs to
 /// each other. Where terms cancel, or the backend rounds outward, P has room for what A - L C̄, L Dv
-/// and the sums have been rounded by (rounding_room.hpp). Models with E are not taken. Constant
-/// functions may be used from several threads.
+/// and the sums have been rounded by (rounding_room.hpp); with outward rounding a coordinate of X̂⁺
+/// is free where an entry of A - L C̄ was rounded that meets an unbounded coordinate of X̂. Models
+/// with E are not taken. Constant functions may be used from several threads.
 class LuenbergerRecursion {
  public:
   /// L is n×n_y. `held`: a zonotope by its columns (n rows, or none at all) of which every X̂ that
@@ -91,6 +92,7 @@ class LuenbergerRecursion {
   void take_sizes();
   void take_thickness();
   Enclosure bounded_box(const Vector& widths, const std::string& cause) const;
+  Vector lost_rows(const Box& reach) const;
 
   std::shared_ptr<const SetBackend> backend_;
   Budget budget_;

@@ -81,13 +81,17 @@ RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn terms) : backend_
 
 void RoundingRoom::make(const std::vector<Index>& rows, VectorIn terms) {
   columns_ = Matrix::Zero(terms.size(), static_cast<Index>(rows.size()));
+  half_widths_ = Vector::Zero(terms.size());
   if (rows.empty()) return;
+  Vector factors = Vector::Ones(columns_.cols());
   for (Index column = 0; column < columns_.cols(); ++column) {
     const Index i = rows[static_cast<std::size_t>(column)];
-    columns_(i, column) = share * terms[i];
+    const bool free = std::isinf(terms[i]) && backend_.info().unbounded;
+    half_widths_[i] = share * terms[i];
+    columns_(i, column) = free ? 1 : half_widths_[i];
+    if (free) factors[column] = infinity;
   }
-  const Vector ones = Vector::Ones(columns_.cols());
-  factors_ = backend_.box({-ones, ones});
+  factors_ = backend_.box({-factors, factors});
 }
 
 bool RoundingRoom::may_be_needed(double most, const Thickness& thickness) {

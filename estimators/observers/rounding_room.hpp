@@ -41,7 +41,8 @@ class RoundingRoom {
   /// center of.
   RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn terms, const Thickness& thickness);
 
-  /// The same in every row, whatever the sum and the set are, and for every backend.
+  /// The same in every row, whatever the sum and the set are, and for every backend. Rows of
+  /// infinite terms are free, where the backend has unbounded sets.
   RoundingRoom(const SetBackend& backend, VectorIn terms);
 
   /// Can any row need room whose terms add up to `most`? At no cost.
@@ -52,7 +53,7 @@ class RoundingRoom {
   bool is_needed() const { return columns_.cols() > 0; }
   /// The box, to be added to what is predicted. Lives as long as the room.
   Term term() const { return {columns_, factors_}; }
-  Vector half_widths() const { return columns_.rowwise().sum(); }
+  Vector half_widths() const { return half_widths_; }
   /// {x ∈ X : z - C x ∈ T V}, with room in its rows.
   Enclosure correct(const Enclosure& X, const CorrectionArgs& measurement) const;
 
@@ -62,6 +63,7 @@ class RoundingRoom {
   const SetBackend& backend_;
   Matrix columns_;
   Enclosure factors_;
+  Vector half_widths_;
 };
 
 /// A box around a set: exact where the set has neither constraints nor lines; else around it
