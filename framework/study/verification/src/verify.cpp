@@ -195,11 +195,15 @@ class Verification {
                      FeasibleSequence* feasible) {
     VerifiedPipeline& found = outcome_.pipelines.back();
     SmoothedSets smoothed(run_, estimation, feasible);
+    LaterMargin margin(run_, estimation, found.rounding);
     for (std::size_t i = 0; i < estimation.steps.size(); ++i) {
       if (is_stopped()) return;
       const RecordedStep& step = estimation.steps[i];
       const RecordedSet row = sets_.of(run_.pipelines[p], step);
-      StepCheck check(step, row, found.rounding, margin_of_later(row.set, found.rounding));
+      const std::optional<Vector> rounding = margin.next(i, row.set);
+      if (!rounding)
+        sets_.refuse(0, fmt::format("tells of k = {}, which data.csv does not have", step.k));
+      StepCheck check(step, row, found.rounding, *rounding);
       const bool is_wanted = feasible && static_cast<std::int64_t>(i) % options_.every == 0,
                  is_open = is_wanted && is_late();
       const auto F = is_open ? std::nullopt : smoothed.at(step.k, is_wanted);
@@ -224,11 +228,7 @@ class Verification {
   /// `feasible`: null where the pipeline is not asked for, of which only the files are read.
   void check(std::size_t p, const RecordedEstimation& estimation, FeasibleSequence* feasible) {
     const RecordedPipeline& pipeline = run_.pipelines[p];
-    Study study;
-    study.file = run_.files.directory() / "results.json";
-    study.model = run_.model;
-    study.data = run_.data;
-    const std::unique_ptr<DataSource> data = open_data(study);
+    const std::unique_ptr<DataSource> data = data_of(run_);
     std::optional<Sample> sample, before;
     std::optional<RecordedSet> row, row_before;
     std::optional<detail::RoundingMargin> rounding;
