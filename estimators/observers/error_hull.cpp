@@ -6,6 +6,9 @@
 //   -Λ F]
 // and the estimate is x ± h with the half widths h of error_widths.hpp, which do not depend on the
 // data.
+#include <optional>
+#include <utility>
+
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
@@ -98,8 +101,9 @@ class ErrorHullObserver final : public Observer {
         share_(rounding::gamma(8 * (model().states() + model().inputs() + model().outputs() +
                                     model().disturbances() + model().noises()) +
                                32)),
-        off_(complete_.M.value),
-        widths_(complete_.M, complete_.D) {}
+        widths_(complete_.M, complete_.D),
+        off_(widths_.memory()),
+        before_{{}, 0, {}, off_, {}} {}
 
   LineForm initial_set() const override { return X0_; }
   std::vector<Gain> gains() const override { return {gain_}; }
@@ -108,6 +112,12 @@ class ErrorHullObserver final : public Observer {
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
+    replaced_.reset();
+    before_.estimate = {};
+    return told(first.k, begun(X0, first));
+  }
+
+  Enclosure begun(const std::optional<Enclosure>& X0, const Sample& first) {
     const sets::Zonotope start =
         invariant::enclosing_zonotope(X0 ? (*X0)->line_form() : X0_, "the initial set");
     off_.start();
@@ -130,6 +140,16 @@ class ErrorHullObserver final : public Observer {
   }
 
   Enclosure do_step(const Sample& before, const Sample& now) override {
+    if (replaced_) go_on_from(*std::exchange(replaced_, {}), before.k);
+    before_.estimate = last_;
+    before_.k = k_;
+    before_.x = x_;
+    before_.off = off_;
+    widths_.keep(before_.widths);
+    return told(now.k, stepped(before, now));
+  }
+
+  Enclosure stepped(const Sample& before, const Sample& now) {
     return timed(Phase::predict, [&] {
       const Sample& used = form_ == GainForm::filter ? now : before;
       if (used.is_complete()) {
@@ -149,15 +169,36 @@ class ErrorHullObserver final : public Observer {
     });
   }
 
+  const Enclosure& told(Index k, Enclosure estimate) {
+    last_ = std::move(estimate);
+    k_ = k;
+    return last_;
+  }
+
   void do_replace(const Enclosure& X) override {
     const Box hull = X->interval_hull();
     if (hull.is_empty()) return;  // of nothing every box is an enclosure
     if (!hull.is_bounded())
       throw Error(Errc::unsupported, "\"error_hull\" goes on from bounded sets only");
-    x_ = hull.center();
-    const Matrix half = Vector((hull.upper - x_).cwiseMax(x_ - hull.lower)).asDiagonal();
-    off_.start();
-    widths_.start({half, 4 * rounding::unit * half});
+    replaced_ = X;
+  }
+
+  /// An estimate of its own at time k is gone back to with all that was known then, by which errors
+  /// keep the directions in which they decay. Of any other set the box is all that is known.
+  void go_on_from(const Enclosure& X, Index k) {
+    if (X.set == last_.set && k_ == k) return;
+    if (X.set == before_.estimate.set && before_.k == k) {
+      x_ = before_.x;
+      off_ = before_.off;
+      widths_.go_back(before_.widths);
+    } else {
+      const Box hull = X->interval_hull();
+      x_ = hull.center();
+      const Matrix half = Vector((hull.upper - x_).cwiseMax(x_ - hull.lower)).asDiagonal();
+      off_.start();
+      widths_.start({half, 4 * rounding::unit * half});
+    }
+    told(k, X);
   }
 
   /// Moves x to the next time; by how much rounding can have moved it.
@@ -188,8 +229,21 @@ class ErrorHullObserver final : public Observer {
   PerOutputs<ErrorStep> others_;
   double share_;
   Vector x_, next_;  ///< next_: memory for the next one
-  ErrorMemory off_;  ///< what the numbers of x are off by
   ErrorWidths widths_;
+  ErrorMemory off_;  ///< what the numbers of x are off by
+
+  /// An estimate, and what the observer knew beside its box.
+  struct Kept {
+    Enclosure estimate;
+    Index k = 0;
+    Vector x;
+    ErrorMemory off;
+    ErrorWidths::State widths;
+  };
+  Enclosure last_;  ///< the estimate of now
+  Index k_ = 0;
+  Kept before_;                        ///< of the estimate that the last step began from
+  std::optional<Enclosure> replaced_;  ///< what the next step begins from instead
 };
 
 GainForm form_from(const Params& params) {

@@ -42,6 +42,20 @@ ErrorWidths::ErrorWidths(Rounded M, Rounded D)
       tail_(sum_of_norms(M_.value)),
       noise_(columns(D_)),
       start_(columns({Matrix(M_.value.rows(), 0), Matrix(M_.value.rows(), 0)})),
+void ErrorWidths::keep(State& state) const {
+  state.noise = noise_;
+  state.start = start_;
+  state.sum = sum_;
+  state.steps = steps_;
+}
+
+void ErrorWidths::go_back(const State& state) {
+  noise_ = *state.noise;
+  start_ = *state.start;
+  sum_ = state.sum;
+  steps_ = state.steps;
+}
+
       sum_(Vector::Zero(M_.value.rows())) {}
 
 ErrorWidths::Columns ErrorWidths::columns(const Rounded& Z) const {

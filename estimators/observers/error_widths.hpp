@@ -3,6 +3,8 @@
 // reduced. [Tang2019]
 #pragma once
 
+#include <optional>
+
 #include "gains/gain_form.hpp"
 #include "observers/error_memory.hpp"
 
@@ -22,14 +24,25 @@ class ErrorWidths {
   /// A step by other matrices; what follows starts from the box around the errors.
   void step_by(const Rounded& M, const Rounded& D);
   Vector half_widths() const;
+  /// A memory of M in which nothing has happened yet.
+  const ErrorMemory& memory() const { return memory_; }
 
- private:
   /// Columns Mᵏ Z and a bound of what they are off by, added up over the columns.
   struct Columns {
     Matrix value;
     ErrorMemory off;
     Vector past;  ///< a bound for all times to come, once `value` has decayed
   };
+  /// What changes from step to step.
+  struct State {
+    std::optional<Columns> noise, start;
+    Vector sum;
+    double steps = 0;
+  };
+  void keep(State& state) const;
+  void go_back(const State& state);
+
+ private:
   Columns columns(const Rounded& Z) const;
   Vector sum_of(const Columns& Z) const;
   void move_on(Columns& Z) const;

@@ -158,6 +158,65 @@ TEST_CASE("a replaced set, and a start from another one") {
   }
 }
 
+TEST_CASE("looking for outliers, which goes back at every sample, costs no widths") {
+  Model model;  // a rotation, whose box grows where it is taken anew at every step
+  LinearModel& m = model.linear;
+  m.A = Matrix{{.5, -.8}, {.8, .5}};
+  m.B = Matrix(2, 0);
+  m.C = Matrix{{1, 0}};
+  m.D = Matrix(1, 0);
+  m.Bw = .01 * Matrix::Identity(2, 2);
+  m.Dv = Matrix{{1}};
+  model.X0 = make_box({Vector{{-1, -1}}, Vector{{1, 1}}});
+  model.W = model.X0;
+  model.V = make_box({Vector{{-1}}, Vector{{1}}});
+  for (const Params& params : {Params(), previous({})}) {
+    const auto make = [&] {
+      return plugins().observer("error_hull", model, plugins().backend("interval"), params);
+    };
+    const auto plain = make(), watching = make();
+    watching->leave_out_outliers(1, 50);
+    for (const bool again : {false, true}) {
+      Run run(model, 3, false);
+      plain->start();
+      watching->start();
+      for (Index k = 0; k < 200; ++k) {
+        CAPTURE(k);
+        Sample sample = run.sample(k);
+        const Box expected = plain->step(sample).set->interval_hull();
+        if (!again && k == 20) sample.y[0] += 1000;
+        const Estimate estimate = watching->step(sample);
+        const Box found = estimate.set->interval_hull();
+        if (again) {
+          CHECK(found.lower == expected.lower);
+          CHECK(found.upper == expected.upper);
+          watching->replace(estimate.set);  // its own, of the same time
+        }
+        CHECK((half_widths(found).array() <= 20 * half_widths(expected).array()).all());
+        CHECK(holds(estimate.set, run.x));
+        run.move_on();
+      }
+    }
+  }
+}
+
+TEST_CASE("an estimate of an earlier time says no more than its box") {
+  const Model model = plants()[0].model;
+  const auto observer = plugins().observer("error_hull", model, plugins().backend("interval"), {}),
+             other = plugins().observer("error_hull", model, plugins().backend("interval"), {});
+  const std::vector<Sample>& samples = plants()[0].samples;
+  std::vector<Enclosure> sets;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sets.push_back(observer->step(samples[k]).set);
+    other->step(samples[k]);
+  }
+  observer->replace(sets[1]);  // as states of time 2
+  other->replace(plugins().backend("interval")->box(sets[1]->interval_hull()));
+  const Box found = observer->step(samples[3]).set->interval_hull(),
+            expected = other->step(samples[3]).set->interval_hull();
+  CHECK(distance({found}, {expected}) < 1e-12);
+}
+
 TEST_CASE("what it does not take is said") {
   const auto problems = [](const Model& model, const Params& params) {
     return plugins().registry.check<ObserverEntry>("error_hull",
