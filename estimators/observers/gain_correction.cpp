@@ -6,6 +6,8 @@
 // which only its size depends. The correction is the recursion of luenberger_recursion.hpp for a
 // state that stays where it is, A = I and neither inputs nor disturbances, so that ranges of
 // sensors, an interval C, missing outputs and rounding are dealt with as there.
+#include <cmath>
+
 #include "components.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/tolerances.hpp"
@@ -69,11 +71,26 @@ class GainCorrection final : public Observer {
   }
   void do_replace(const Enclosure& X) override { X_ = X; }
 
-  Enclosure corrected(GainedRecursion& recursion, const Enclosure& X, const Sample& now) {
+  Enclosure corrected(GainedRecursion& recursion, const Enclosure& X, const Sample& sample) {
+    const std::optional<Sample> others = without_open_outputs(recursion, X, sample);
+    const Sample& now = others ? *others : sample;
     const bool none = now.y.size() == static_cast<Index>(now.missing.size());
     const Enclosure narrowed =
         none ? X : timed(Phase::correct, [&] { return narrowed_by(recursion, X, now); });
     return timed(Phase::reduce, [&] { return backend().reduce(narrowed, budget_); });
+  }
+
+  /// The sample without outputs of which nothing is known where X has no bounds, as those of a
+  /// sensor whose factor lies in a range; nothing where there are none.
+  static std::optional<Sample> without_open_outputs(const GainedRecursion& recursion,
+                                                    const Enclosure& X, const Sample& now) {
+    const Vector widths = recursion.complete().open_outputs(X, now.u);
+    std::vector<Index> open;
+    for (Index i = 0; i < widths.size(); ++i) {
+      if (!std::isfinite(widths[i])) open.push_back(i);
+    }
+    if (open.empty()) return std::nullopt;
+    return missing_outputs(now, open);
   }
 
   /// ∅ where an output is proven to contradict the prediction.

@@ -211,11 +211,10 @@ Vector LuenbergerRecursion::output_widths(const Enclosure& X, const Vector& larg
   return widths;
 }
 
-Enclosure LuenbergerRecursion::bounded_box(const Vector& widths, const std::string& cause) const {
-  if (!widths.allFinite())
-    throw Error(Errc::unsupported,
-                cause + " needs a bounded set of states: give a bounded initial set");
-  return backend_->box({-widths, widths});
+Vector LuenbergerRecursion::open_outputs(const Enclosure& X, VectorIn u) const {
+  const bool by_C = C_radius_.size() != 0;
+  if (!by_C && sensor_radius_.size() == 0) return {};
+  return output_widths(X, by_C ? largest_entries(X->interval_hull()) : Vector(X->dim()), u);
 }
 
 void LuenbergerRecursion::add_open(Summands& to, Target target, const Enclosure& X, VectorIn u,
@@ -238,12 +237,12 @@ void LuenbergerRecursion::add_open(Summands& to, Target target, const Enclosure&
     const Vector inputs = most_f_.cwiseProduct(u.cwiseAbs());
     const Vector widths = interval_spread(A_radius_, largest, A_.rows()) +
                           interval_spread(B_radius_, inputs, A_.rows());
-    to.parameters = bounded_box(widths, "an interval matrix A");
+    to.parameters = backend_->box({-widths, widths});
     add(state_unit_, to.parameters, widths);
   }
   if (by_C || sensor_radius_.size() != 0) {
     const Vector widths = output_widths(X, largest, u);
-    to.outputs = bounded_box(widths, "a range of sensor effectiveness or an interval matrix C");
+    to.outputs = backend_->box({-widths, widths});
     add(state ? minus_L_ : output_unit_, to.outputs, widths);
   }
 }

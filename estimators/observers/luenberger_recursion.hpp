@@ -43,6 +43,9 @@ class LuenbergerRecursion {
   Enclosure next(const Enclosure& X, const Sample& now, Vector* open = nullptr,
                  const Box* hull = nullptr) const;
   Enclosure reduced(const Enclosure& X) const { return backend_->reduce(X, budget_); }
+  /// Half widths of Δ, infinite where X̂ has no bounds that an output needs; of no entries for exact
+  /// sensors and C.
+  Vector open_outputs(const Enclosure& X, VectorIn u) const;
   /// R, in the space of outputs.
   Enclosure residual(const Enclosure& X, const Sample& now) const;
 
@@ -89,10 +92,9 @@ class LuenbergerRecursion {
   /// For X̂⁺, whose shift has been added up already.
   std::optional<RoundingRoom> room_of(const Enclosure& X, VectorIn shift, const Sample& now,
                                       const Box* hull) const;
+  Vector lost_rows(const Box& reach) const;
   void take_sizes();
   void take_thickness();
-  Enclosure bounded_box(const Vector& widths, const std::string& cause) const;
-  Vector lost_rows(const Box& reach) const;
 
   std::shared_ptr<const SetBackend> backend_;
   Budget budget_;

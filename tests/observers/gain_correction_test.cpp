@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Predicted sets corrected by a gain: hulls that were found independently, what they must enclose,
 // and samples that contradict them.
+#include <cmath>
+
 #include <doctest/doctest.h>
 
 #include "observers/noisy_runs.hpp"
@@ -239,4 +241,43 @@ TEST_CASE("what it does not take is said") {
   Model unbounded = plants()[2].model;
   unbounded.V = make_space(2);
   CHECK(!problems(unbounded, {}).empty());
+}
+
+TEST_CASE("what a set without bounds leaves open of outputs is left out, and the rest is used") {
+  Model model;
+  LinearModel& m = model.linear;
+  m.A = Matrix{{.5, 0}, {0, .9}};
+  m.B = Matrix(2, 0);
+  m.C = Matrix::Identity(2, 2);
+  m.D = Matrix(2, 0);
+  m.Bw = m.Dv = .1 * Matrix::Identity(2, 2);
+  model.X0 = model.W = model.V = make_box({Vector{{-1, -1}}, Vector{{1, 1}}});
+  for (const bool by_range : {false, true}) {
+    CAPTURE(by_range);
+    m.C_radius = by_range ? Matrix() : Matrix{{0, 0}, {0, .1}};
+    m.sensor = by_range ? Box{Vector{{1, .5}}, Vector{{1, .7}}} : Box{};
+    for (const char* backend : {"interval", "line_zonotope"}) {
+      CAPTURE(backend);
+      const auto sets = plugins().backend(backend);
+      const auto observer =
+          plugins().observer("gain_correction", model, sets, given(Matrix{{.9, .05}, {0, .9}}));
+      Box start = Box::space(2);
+      start.lower[0] = -9;
+      start.upper[0] = 9;
+      for (const bool bounded : {true, false}) {
+        observer->start(bounded ? sets->box(start) : sets->space(2));
+        Run run(model, 4, false);
+        for (Index k = 0; k < 10; ++k) {
+          Sample now = run.sample(k);
+          if (by_range) now.y[1] -= .4 * run.x[1];
+          const Box hull = observer->step(now).set->interval_hull();
+          CHECK(hull.lower[0] <= run.x[0]);
+          CHECK(run.x[0] <= hull.upper[0]);
+          if (bounded) CHECK(hull.upper[0] - hull.lower[0] < 2.1);
+          CHECK(std::isinf(hull.upper[1]));
+          run.move_on();
+        }
+      }
+    }
+  }
 }
