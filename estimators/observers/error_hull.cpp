@@ -257,9 +257,8 @@ std::vector<Diagnostic> check_error_hull(const ObserverContext& context, const P
              "use the observer \"descriptor\""}};
   }
   check_bounded_start(context, params, problems);
-  check_noises(context, problems);
-  if (!problems.empty()) return problems;  // gains are designed for these sets
-  check_observer_gain(context, params, "gain", steady_kalman(), problems, form_from(params));
+  if (check_noises(context, problems, Beyond::told))  // gains are designed for these sets
+    check_observer_gain(context, params, "gain", steady_kalman(), problems, form_from(params));
   return problems;
 }
 

@@ -137,9 +137,8 @@ std::vector<Diagnostic> check_gain_correction(const ObserverContext& context,
   }
   const bool grows = has_spread(m.C_radius) || has_spread(m.sensor_radius());
   if (problems.empty() && grows) check_bounded_start(context, params, problems);
-  check_noises(context, problems);
-  if (!problems.empty()) return problems;  // gains are designed for these sets
-  check_observer_gain(context, params, "gain", following_kalman(), problems, GainForm::filter);
+  if (check_noises(context, problems))  // gains are designed for these sets
+    check_observer_gain(context, params, "gain", following_kalman(), problems, GainForm::filter);
   return problems;
 }
 

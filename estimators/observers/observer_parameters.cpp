@@ -126,16 +126,21 @@ void check_bounded_start(const ObserverContext& context, const Params& params,
   }
 }
 
-void check_noises(const ObserverContext& context, std::vector<Diagnostic>& problems) {
+bool check_noises(const ObserverContext& context, std::vector<Diagnostic>& problems,
+                  Beyond beyond) {
+  bool good = true;
   for (const auto& [set, name] : noises_of(context.model)) {
-    if (is_beyond(context, *set)) continue;  // is told with what all observers share
+    const bool is_told = beyond == Beyond::told_by_common && is_beyond(context, *set);
     try {
       invariant::enclosing_zonotope(*set, std::string("the system's ") + name);
     } catch (const Error& error) {
+      good = false;
+      if (is_told) continue;
       problems.push_back(
           {"", error.what(), std::string("give a bounded ") + name + " that is not empty"});
     }
   }
+  return good;
 }
 
 }  // namespace cordon::estimators

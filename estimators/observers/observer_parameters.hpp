@@ -36,7 +36,10 @@ void check_set(const ObserverContext& context, const LineForm& set, const std::s
 void check_bounded_start(const ObserverContext& context, const Params& params,
                          std::vector<Diagnostic>& problems);
 
-/// Problems of W and V that no zonotope encloses.
-void check_noises(const ObserverContext& context, std::vector<Diagnostic>& problems);
+/// Problems of W and V that no zonotope encloses; false if there are any. Those that the backend
+/// cannot hold are left to `check_common`, or told here for observers that hand it neither.
+enum class Beyond { told_by_common, told };
+bool check_noises(const ObserverContext& context, std::vector<Diagnostic>& problems,
+                  Beyond beyond = Beyond::told_by_common);
 
 }  // namespace cordon::estimators

@@ -231,3 +231,22 @@ TEST_CASE("what it does not take is said") {
   model.linear.A_radius = Matrix::Constant(3, 3, .01);
   CHECK(problems(model, {})[0].message.find("interval matrices") != std::string::npos);
 }
+
+TEST_CASE("all problems are told at once, of noises that no backend of boxes holds as well") {
+  Model model = plants()[2].model;
+  const Params wrong = given(Matrix::Constant(3, 2, 10));
+  for (const char* backend : {"zonotope", "interval", "line_zonotope"}) {
+    CAPTURE(backend);
+    const auto problems = [&](const Params& params) {
+      return plugins().registry.check<ObserverEntry>("error_hull",
+                                                     {model, plugins().backend(backend)}, params);
+    };
+    Params both = wrong;
+    both.set("initial_set", make_space(3));
+    CHECK(problems(both).size() == 2);
+    model.V = make_space(model.V.dim());
+    REQUIRE(problems(wrong).size() == 1);
+    CHECK(problems(wrong)[0].message.find("the system's V") != std::string::npos);
+    model.V = plants()[2].model.V;
+  }
+}

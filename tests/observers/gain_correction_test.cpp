@@ -243,6 +243,15 @@ TEST_CASE("what it does not take is said") {
   CHECK(!problems(unbounded, {}).empty());
 }
 
+TEST_CASE("all problems are told at once") {
+  const Params wrong = given(Matrix::Constant(3, 2, 10)).set("max_generators", std::int64_t{1});
+  CHECK(plugins()
+            .registry
+            .check<ObserverEntry>("gain_correction",
+                                  {plants()[2].model, plugins().backend("zonotope")}, wrong)
+            .size() == 2);
+}
+
 TEST_CASE("what a set without bounds leaves open of outputs is left out, and the rest is used") {
   Model model;
   LinearModel& m = model.linear;
