@@ -73,8 +73,9 @@ ordered_json numbers(const Vector& values) {
 std::string missed_text(const Labels& labels, const Contradiction& found) {
   if (found.before) return "no state is left, whatever the outputs are";
   if (found.output < 0) return "the outputs together contradict the prediction, which none misses";
-  return fmt::format("{} lies {:.4g} beyond its prediction",
-                     label_of(labels.outputs, "y", found.output), found.distance);
+  const std::string name = label_of(labels.outputs, "y", found.output);
+  if (!(found.distance > 0)) return name + " contradicts the prediction, next to its bounds";
+  return fmt::format("{} lies {:.4g} beyond its prediction", name, found.distance);
 }
 
 std::string state_name(const Labels& labels, Index i) {

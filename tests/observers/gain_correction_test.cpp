@@ -290,3 +290,47 @@ TEST_CASE("what a set without bounds leaves open of outputs is left out, and the
     }
   }
 }
+
+TEST_CASE("where one output alone makes the estimate empty, it is the one that is named") {
+  Model model;  // the prediction is narrower before it is reduced
+  LinearModel& m = model.linear;
+  m.A = Matrix{{.6, .5}, {-.5, .6}};
+  m.B = Matrix(2, 0);
+  m.C = Matrix{{1, 1}};
+  m.D = Matrix(1, 0);
+  m.Bw = Matrix::Identity(2, 2);
+  m.Dv = Matrix{{.01}};
+  model.X0 = make_box({Vector{{-1, -1}}, Vector{{1, 1}}});
+  model.W = make_box({Vector{{-.1, -.1}}, Vector{{.1, .1}}});
+  model.V = make_box({Vector{{-1}}, Vector{{1}}});
+  for (const bool second : {false, true}) {
+    CAPTURE(second);
+    if (second) {  // an output that says nothing
+      m.C = Matrix{{0, 0}, {1, 1}};
+      m.D = Matrix(2, 0);
+      m.Dv = Matrix{{.01}, {.01}};
+    }
+    const auto observer =
+        plugins().observer("gain_correction", model, plugins().backend("zonotope"),
+                           Params().set("max_generators", std::int64_t{2}));
+    const Index p = m.C.rows();
+    const auto is_empty_by = [&](double last) {
+      observer->start();
+      Vector y = Vector::Zero(p);
+      for (Index k = 0; k < 6; ++k) observer->step({k, Vector(0), y});
+      y[p - 1] = last;
+      return observer->step({6, Vector(0), y}).consistent == Answer::no;
+    };
+    double inside = 0, outside = 5;
+    while (outside - inside > 1e-6) {
+      const double middle = (inside + outside) / 2;
+      (is_empty_by(middle) ? outside : inside) = middle;
+    }
+    for (const double y : {outside, 5.}) {
+      REQUIRE(is_empty_by(y));
+      REQUIRE(observer->contradiction());
+      CHECK(observer->contradiction()->output == p - 1);
+      CHECK((observer->contradiction()->distance > 0) == (y == 5));
+    }
+  }
+}

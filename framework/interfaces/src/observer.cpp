@@ -248,7 +248,7 @@ Estimate Observer::advance_without_outliers(const Sample& now, std::optional<Sam
     go_back();
     estimate = advance(missed.empty() ? now : missing_outputs(now, missed));
     if (estimate.consistent == Answer::no && !empty_before) {  // the others together
-      if (missed.empty()) contradiction_ = Contradiction{now.k};
+      if (missed.empty()) contradiction_ = {now.k, present.size() == 1 ? present[0] : -1};
       missed = present;
       go_back();
       estimate = advance(none);
@@ -272,8 +272,18 @@ void Observer::explain(const Sample& now) {
     if (!before) {
       go_back();
       before = advance(missing_outputs(now, present)).consistent == Answer::no;
-      if (!before && outliers(*present_of(held_), now).empty())
+      if (!before && outliers(*present_of(held_), now).empty()) {
         contradiction_ = Contradiction{now.k};
+        for (const Index output : present) {  // by itself, with next to nothing beyond its bounds?
+          std::vector<Index> others = present;
+          std::erase(others, output);
+          if (!others.empty()) go_back();
+          if (!others.empty() && advance(missing_outputs(now, others)).consistent != Answer::no)
+            continue;
+          contradiction_->output = output;
+          break;
+        }
+      }
     }
     if (before) contradiction_ = Contradiction{now.k, -1, 0, true};
   } catch (const Error& error) {  // why an estimate is empty was not asked for

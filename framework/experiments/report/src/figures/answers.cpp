@@ -135,7 +135,9 @@ std::string missed(const RunFiles& files, const Cursor& worst) {
   const std::string name = output >= 1 && output <= static_cast<double>(names.size())
                                ? names[static_cast<std::size_t>(output) - 1]
                                : "y_" + shown(output, 15);
-  return fmt::format("{} lies {} beyond its prediction", name, shown(value_of(worst, "distance")));
+  const double distance = value_of(worst, "distance");
+  if (!(distance > 0)) return name + " contradicts the prediction, next to its bounds";
+  return fmt::format("{} lies {} beyond its prediction", name, shown(distance));
 }
 
 /// Samples that contradict the model, and what became of them.
