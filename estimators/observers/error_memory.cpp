@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observers/error_memory.hpp"
 
+#include <cmath>
+
 #include "cordon/core/linalg.hpp"
 #include "observers/rounding_room.hpp"
 
@@ -9,6 +11,7 @@ namespace cordon::estimators {
 namespace {
 
 constexpr Index longest_block = 4096;
+constexpr double most_operations = 1e9;  ///< for powers one by one
 
 }  // namespace
 
@@ -17,14 +20,27 @@ ErrorMemory::ErrorMemory(const Matrix& F) {
   Matrix power = Matrix::Identity(n, n);
   largest_ = sum_ = Matrix::Zero(n, n);
   block_ = 0;
+  double norms = 0;
+  const double operations =
+      static_cast<double>(n) * static_cast<double>(n) * static_cast<double>(n);
   for (Index next = 1; next <= longest_block; next *= 2) {
+    if (next > 1 && static_cast<double>(next) * operations > most_operations) {
+      const Matrix size = power.cwiseAbs();  // |Fᵐ⁺ⁱ| ≤ |Fᵐ| |Fⁱ|
+      norms += row_norm(power) * norms;
+      largest_ = largest_.cwiseMax(linalg::product(size, largest_)).eval();
+      sum_ += linalg::product(size, sum_);
+      power = linalg::product(power, power);
+      block_ = next;
+    }
     for (; block_ < next; ++block_) {
       largest_ = largest_.cwiseMax(power.cwiseAbs());
       sum_ += power.cwiseAbs();
+      norms += row_norm(power);
       power = linalg::product(F, power);
     }
     if (row_norm(power) <= 0.5) break;
   }
+  if (row_norm(power) <= 0.5 && std::isfinite(norms)) sum_of_norms_ = 4 * norms;
   power_ = power.cwiseAbs();
   start();
 }

@@ -11,7 +11,8 @@ namespace cordon::estimators {
 ///   |e| ≤ max_{i<m} |Fⁱ| p + (Σ_{i<m} |Fⁱ|) max s of this block,
 /// where p bounds |e| at the block's beginning. What is long past is forgotten as F decays, however
 /// large |F| is. Where no m up to 4096 is found bounds hold as well, and may grow. O(n) per step,
-/// O(n²) per block and for a bound, O(n³ m) once.
+/// O(n²) per block and for a bound, O(n³ m) once; beyond 1e9 operations blocks are doubled by
+/// |Fᵐ⁺ⁱ| ≤ |Fᵐ| |Fⁱ|, in O(n³ log m).
 class ErrorMemory {
  public:
   explicit ErrorMemory(const Matrix& F);
@@ -19,11 +20,14 @@ class ErrorMemory {
   void start();
   void step(VectorIn sizes);
   Vector bound() const;
+  /// At least Σ_j ‖Fʲ‖∞ over all j, with room for the rounding of the powers; ∞: not known.
+  double sum_of_norms() const { return sum_of_norms_; }
 
  private:
   Matrix power_, largest_, sum_;  ///< |Fᵐ|, max |Fⁱ|, Σ |Fⁱ|
   Index block_ = 1, steps_ = 0;
   Vector past_, now_;  ///< p, max s
+  double sum_of_norms_ = infinity;
 };
 
 }  // namespace cordon::estimators

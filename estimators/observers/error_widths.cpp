@@ -12,25 +12,10 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr Index most_powers = 4096;
 /// Of the smallest width so far: columns that add no more in all times to come count as decayed.
 /// So does what is far above underflow, and far below any width.
 constexpr double negligible_part = 1e-16;
 constexpr double decayed = 1e-250;
-
-/// Σ_j ‖Mʲ‖∞ ≤ 2 Σ_{j<m} ‖Mʲ‖∞ where ‖Mᵐ‖∞ ≤ 1/2; rounding of the powers is a share of the other
-/// half.
-double sum_of_norms(const Matrix& M) {
-  Matrix power = Matrix::Identity(M.rows(), M.rows());
-  double sum = 0;
-  for (Index j = 0; j < most_powers; ++j) {
-    sum += row_norm(power);
-    power = linalg::product(M, power);
-    if (!std::isfinite(sum)) break;
-    if (row_norm(power) <= 0.25) return 2 * sum;
-  }
-  return infinity;
-}
 
 }  // namespace
 
@@ -39,23 +24,9 @@ ErrorWidths::ErrorWidths(Rounded M, Rounded D)
       D_(std::move(D)),
       memory_(M_.value),
       size_(M_.value.cwiseAbs()),
-      tail_(sum_of_norms(M_.value)),
+      tail_(memory_.sum_of_norms()),
       noise_(columns(D_)),
       start_(columns({Matrix(M_.value.rows(), 0), Matrix(M_.value.rows(), 0)})),
-void ErrorWidths::keep(State& state) const {
-  state.noise = noise_;
-  state.start = start_;
-  state.sum = sum_;
-  state.steps = steps_;
-}
-
-void ErrorWidths::go_back(const State& state) {
-  noise_ = *state.noise;
-  start_ = *state.start;
-  sum_ = state.sum;
-  steps_ = state.steps;
-}
-
       sum_(Vector::Zero(M_.value.rows())) {}
 
 ErrorWidths::Columns ErrorWidths::columns(const Rounded& Z) const {
@@ -69,6 +40,20 @@ void ErrorWidths::start(const Rounded& R) {
   start_ = columns(R);
   sum_.setZero();
   steps_ = 0;
+}
+
+void ErrorWidths::keep(State& state) const {
+  state.noise = noise_;
+  state.start = start_;
+  state.sum = sum_;
+  state.steps = steps_;
+}
+
+void ErrorWidths::go_back(const State& state) {
+  noise_ = *state.noise;
+  start_ = *state.start;
+  sum_ = state.sum;
+  steps_ = state.steps;
 }
 
 /// At least |Z| 1.
