@@ -69,6 +69,8 @@ std::string consistency(const Labels& labels, const PipelineOutcome& pipeline) {
   if (found.inconsistent_from >= 0)
     return "empty from " + time_text(labels, found.inconsistent_from);
   if (found.undecided > 0) return fmt::format("undecided at {} steps", found.undecided);
+  if (pipeline.steps == 0)
+    return found.lag > 0 ? "no step: no more samples than it lags by" : "no step";
   return found.not_enclosed > 0 ? "begun anew" : "consistent";
 }
 

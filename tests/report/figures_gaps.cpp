@@ -61,6 +61,22 @@ TEST_CASE("where estimates begin anew they are marked, and their wide first sets
   CHECK(small_marks(content<Plot>(report, "width_1")).size() == 1);
 }
 
+TEST_CASE("a new beginning that is empty at once is one as well") {
+  const ResultsFiles files;
+  files.write("data.csv", "k,y_1\n0,0\n");
+  files.write("steps.csv",
+              "pipeline,k,consistent,tightness,lower_1,lower_2,upper_1,upper_2\n"
+              "a,0,no,outer,1,1,-1,-1\n"
+              "a,1,no,outer,1,1,-1,-1\n"
+              "a,2,no,outer,1,1,-1,-1\n"
+              "a,3,yes,outer,-2,0,3,1\n"
+              "a,4,no,outer,1,1,-1,-1\n"
+              "a,5,no,outer,1,1,-1,-1\n");
+  const std::vector<Mark> marks = small_marks(content<Plot>(read_report(files.path()), "bounds_1"));
+  REQUIRE(marks.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) CHECK(marks[i].x == 1. + static_cast<double>(i));
+}
+
 TEST_CASE("what follows a restart decides no range before it is about as wide as usual") {
   const ResultsFiles files;
   files.write("data.csv", "k,y_1,x_1\n0,0,0\n1,0,0\n6,0,0\n7,0,0\n8,0,0\n9,0,0\n");

@@ -206,6 +206,7 @@ TEST_CASE("fewer samples than the lag: no estimate, and no error") {
   CAPTURE(run.ran.out);
   CHECK(run.ran.code == 0);
   CHECK(run.steps().empty());
+  CHECK(run.ran.out.find("no step: no more samples than it lags by") != std::string::npos);
 }
 
 TEST_CASE("gaps, outliers and new beginnings") {

@@ -118,7 +118,8 @@ void add_gains(const RunFiles& files, Report& report) {
   if (table.rows.empty()) return;
   report.figures.push_back({"gains", section::answers, "Gains of observers",
                             "A spectral radius below 1: the error dies out. Monotone: no entry of "
-                            "A - L C is negative. The norm "
+                            "A - L C is negative, of (I - L C) A for observers that correct a "
+                            "prediction. The norm "
                             "bounds the amplification from disturbances "
                             "and noise to the error.",
                             std::move(table)});

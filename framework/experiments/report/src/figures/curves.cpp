@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "figures/columns.hpp"
 #include "study/text/input_file.hpp"
@@ -107,6 +108,8 @@ class StepsReader {
         name = table_.text(name_);
         pipeline = files_.pipeline(name, "steps.csv");
         was_empty = false;
+        anew_.clear();
+        times_anew_ = 0;
         truth.reset();
         // Rows of a pipeline stand together: the data are read once for each, whatever the file
         // holds.
@@ -149,6 +152,18 @@ class StepsReader {
     }
   }
 
+  /// Step k follows one that was empty. One that is empty as well has begun anew too, or the
+  /// pipeline has stopped: that shows where a later one is not empty.
+  void begin_anew(StepCurves& steps, bool empty, std::int64_t k) {
+    if (anew_.size() < max_marks) anew_.push_back(k);
+    ++times_anew_;
+    if (empty) return;
+    steps.times_anew += std::exchange(times_anew_, 0);
+    for (const std::int64_t at : std::exchange(anew_, {})) {
+      if (steps.anew.size() < max_marks) steps.anew.push_back(at);
+    }
+  }
+
   /// Is the estimate proven empty?
   bool add(StepCurves& steps, bool was_empty) {
     const std::int64_t k = table_.integer(k_);
@@ -157,10 +172,7 @@ class StepsReader {
     if (steps.first < 0) steps.first = k;
     steps.last = std::max(steps.last, k);
     if (empty && !was_empty && steps.empty_from.size() < max_marks) steps.empty_from.push_back(k);
-    if (!empty && was_empty) {
-      ++steps.times_anew;
-      if (steps.anew.size() < max_marks) steps.anew.push_back(k);
-    }
+    if (was_empty) begin_anew(steps, empty, k);
     add_bounds(table_, hull_, empty, k, steps.hull);
     for (std::size_t i = 0; i < steps.width.size(); ++i) {
       const double width = table_.number(hull_.upper[i]) - table_.number(hull_.lower[i]);
@@ -197,6 +209,8 @@ class StepsReader {
   BoundColumns hull_, inner_;
   std::vector<std::size_t> metrics_;
   std::vector<bool> numeric_;
+  std::vector<std::int64_t> anew_;  ///< of empty steps behind each other, the first ones
+  std::int64_t times_anew_ = 0;     ///< how many there are
 };
 
 /// Which additive faults are not 0 now, and which mode the plant is in.

@@ -24,9 +24,10 @@ struct StepCurves {
   std::int64_t first = -1, last = -1;  ///< k; -1: there are no steps
   std::int64_t exact = 0;              ///< steps that are claimed to be exact
   std::vector<std::int64_t>
-      empty_from;                  ///< where an estimate is proven empty and the one before was not
-  std::vector<std::int64_t> anew;  ///< where it is not and the one before was: the first ones
-  std::int64_t times_anew = 0;     ///< how many there are
+      empty_from;  ///< where an estimate is proven empty and the one before was not
+  std::vector<std::int64_t>
+      anew;                     ///< where the one before was and a later one is not: the first ones
+  std::int64_t times_anew = 0;  ///< how many there are
 };
 
 struct Curves {
