@@ -156,7 +156,7 @@ TEST_CASE("an unbounded set that is handed over at run time") {
       registry().make<cordon::ObserverEntry>("zonotope_uncertain", {plant("68"), sets}, monotone());
   observer->start(sets->space(3));
   observer->step(sample(0, 0));
-  CHECK_THROWS_AS(observer->step(sample(1, 0)), Error);
+  CHECK_FALSE(observer->step(sample(1, 0)).set->interval_hull().is_bounded());
 }
 
 TEST_CASE("bounds that grow without limit end in an error, not in numbers that are none") {

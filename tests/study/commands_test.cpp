@@ -93,7 +93,7 @@ TEST_CASE("the manual of study files shows valid studies, and every component of
     }
   }
   CHECK(studies == 4);
-  CHECK(pieces == 11);
+  CHECK(pieces == 12);
   const auto list = nlohmann::json::parse(run("list --json", "2>/dev/null").out);
   for (const auto& component : list["components"]) {
     const std::string name = component["name"];

@@ -89,7 +89,7 @@ TEST_CASE("support values of ellipsoids are recorded, and held against the exact
   std::ifstream file(home / "out" / "sets.jsonl");
   for (std::string line; std::getline(file, line);) rows.push_back(Json::parse(line));
   file.close();
-  REQUIRE(rows.size() == 6);
+  REQUIRE(rows.size() == 7);
   CHECK(rows[5]["exchange"] == "outer");
   REQUIRE(rows[5].contains("H"));
   CHECK(rows[5]["H"].size() >= 8);  // an ellipse in its box, in sixteen directions

@@ -335,8 +335,9 @@ class Verification {
           [&] { return enclosed_successors(model, start, estimation.admissible_set, transition); }};
     };
     const bool follows = i == 0 || anew || row_before;
-    const bool holds_successors =  // an outer export is larger than the set that was held
-        estimation.follows_its_sets && (!row_before || row_before->exact_exchange);
+    // an outer form that inequalities cut is larger than the set that was held
+    const bool holds_successors =
+        estimation.follows_its_sets && (!row_before || row_before->rows.rows() == 0);
     if (!check.violation()) {
       if (formulas_ && step.consistent == Answer::no && formulas_->proves_none(options_.deadline)) {
         ++found.proofs;
