@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // cordon conform: the laws of the conformance kit, checked on a plugin's components.
 #include <algorithm>
+#include <charconv>
 #include <memory>
 #include <set>
 #include <unistd.h>
@@ -213,9 +214,10 @@ std::vector<Candidate> with_laws(std::vector<Candidate> candidates, const std::s
   const std::string first = candidates.front().kind;
   std::erase_if(candidates, [&](const Candidate& c) { return !kinds.contains(c.kind); });
   if (candidates.empty())
-    throw Error(Errc::invalid,
-                fmt::format("no law of a {} matches \"{}\"; \"cordon conform --list\" shows all",
-                            first, pattern));
+    throw Error(
+        Errc::invalid,
+        fmt::format("no law of kind \"{}\" matches \"{}\"; \"cordon conform --list\" shows all",
+                    first, pattern));
   return candidates;
 }
 
@@ -281,6 +283,8 @@ Exit conform(const Program& program, const ConformArguments& arguments) {
     total.add(c);
   }
   bar.clear();
+  const bool nothing_checked = exit == Exit::done && total.hold == 0;
+  if (nothing_checked) exit = Exit::unanswered;
   if (total.components > 1) text += total.text();
   if (arguments.json) {
     const Json report{{"plugin", found.plugin},
@@ -293,7 +297,17 @@ Exit conform(const Program& program, const ConformArguments& arguments) {
     text = json_text(report);
   }
   print(text);
+  if (nothing_checked) complain("nothing was checked: no case bore on any law, as told above");
   return exit;
+}
+
+/// The library that reads options takes negative numbers and too large ones modulo 2⁶⁴.
+std::string no_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, seed);
+  if (error == std::errc() && rest == end) return "";
+  return text + " must be a whole number from 0 to 18446744073709551615";
 }
 
 }  // namespace
@@ -317,7 +331,9 @@ CORDON_COMMAND(conform) {
       ->add_option("--law", arguments->laws,
                    "Check the laws whose names match, such as 'soundness.*' [*]")
       ->option_text("GLOB");
-  command->add_option("--seed", arguments->seed, "Of the random cases [1]")->option_text("N");
+  command->add_option("--seed", arguments->seed, "Of the random cases [1]")
+      ->check(no_seed)
+      ->option_text("N");
   command
       ->add_option("--cases", arguments->cases, "Cases per law; expensive laws take a share [80]")
       ->check(CLI::Range(Index{1}, Index{1'000'000}))
@@ -341,7 +357,7 @@ CORDON_COMMAND(conform) {
       "\"rounding\" is checked with each of its values. Exit code 0: all laws hold; 4: one is "
       "violated; 3: the plugin was "
       "refused\n"
-      "or crashed.");
+      "or crashed; 5: no case bore on any law.");
   command->callback([&program, arguments] { program.exit = conform(program, *arguments); });
 }
 

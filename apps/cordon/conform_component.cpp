@@ -88,10 +88,16 @@ Params params_from(const std::string& text, const ParamSchema& schema, bool comp
     }
     params.set(name, value_from(value, *spec));
   }
-  if (!complete) return params;
-  if (const auto problems = schema.complete(params); !problems.empty())
-    throw InputError("--params", problems);
-  return params;
+  Params completed = params;
+  std::vector<Diagnostic> problems = schema.complete(completed);
+  // what a law finds out by trial may be missing; what was given is checked
+  if (!complete) {
+    std::erase_if(problems, [&](const Diagnostic& problem) {
+      return problem.pointer.empty() || !params.has(problem.pointer.substr(1));
+    });
+  }
+  if (!problems.empty()) throw InputError("--params", problems);
+  return complete ? completed : params;
 }
 
 void load_only(Registry& registry, const std::filesystem::path& library) {

@@ -293,7 +293,7 @@ Vector LuenbergerRecursion::next_size(VectorIn x, const Sample& now) const {
 
 Vector LuenbergerRecursion::residual_size(VectorIn s, const Sample& now) const {
   return now.y.cwiseAbs() + output_input_.cwiseAbs() * now.u.cwiseAbs() + C_.cwiseAbs() * s +
-         v_.cwiseAbs();
+         noise_terms_;
 }
 
 Enclosure LuenbergerRecursion::explained_outputs(const Enclosure& E, VectorIn x,

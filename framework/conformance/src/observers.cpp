@@ -201,7 +201,7 @@ void add_observers(LawList& list) {
                         "after replace(X) with x_k ∈ X, later estimates hold the state",
                         observer_case, check_replace, 0.2));
   list.push_back(law_of(kind, "observer.exact_claims",
-                        "an estimate claimed exact is the set of all states that are allowed",
+                        "an estimate claimed exact holds no state that is not allowed",
                         plain_observer_case, check_exact_claims, 0.3));
   list.push_back(law_of(kind, "observer.inconsistent",
                         "data are called inconsistent only where no trajectory explains them",

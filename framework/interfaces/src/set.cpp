@@ -192,7 +192,10 @@ Box Set::interval_hull(std::vector<Certificate>* why) const {
 }
 
 Volume Set::volume() const {
-  if (dim_ == 0) return {is_empty() == Answer::yes ? 0.0 : 1.0, true};
+  if (dim_ == 0) {
+    const Answer empty = is_empty();
+    return {empty == Answer::yes ? 0.0 : 1.0, empty != Answer::unknown};
+  }
   const Box hull = interval_hull();
   if (hull.is_empty()) return {0.0, true};
   std::optional<Volume> own;

@@ -223,7 +223,9 @@ Answer is_empty(const View& X, Certificate* why) {
   const double margin = -rational::enclose(*bound).upper;
   const Vector lambda = data->tail(X.rows.rows());
   const Vector of_center = linalg::product(X.rows.H.cwiseAbs(), X.form.c.cwiseAbs());
-  const double terms = lambda.dot(X.rows.h.cwiseAbs() + of_center);
+  const Vector y = data->head(X.form.constraints()).cwiseAbs();
+  const Vector of_rows = X.form.b.cwiseAbs() + X.form.A.cwiseAbs().rowwise().sum();
+  const double terms = lambda.dot(X.rows.h.cwiseAbs() + of_center) + y.dot(of_rows);
   if (margin <= tolerances::proof_margin * terms) return Answer::unknown;
   return decided(Answer::yes, {Kind::rows, *data, margin}, why);
 }
