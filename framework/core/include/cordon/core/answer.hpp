@@ -38,16 +38,16 @@ std::string_view to_string(Rounding rounding) noexcept;
 /// be checked again without a solver (solvers/certificate.hpp):
 ///   farkas     y, one entry per constraint, with Sᵀy = 0 and bᵀy > ‖Aᵀy‖₁: the set is empty;
 ///              margin = bᵀy - ‖Aᵀy‖₁
-///   point      (δ, ξ), near a solution of the constraints: the set is not empty; margin = the
-///   slack
+///   point      (δ, ξ), near a solution of the constraints: the set is not empty;
+///              margin = the slack
 ///              1 - ‖ξ‖∞
 ///   dual       y with Sᵀy = Mᵀd: h(d) ≤ dᵀc + bᵀy + ‖Gᵀd - Aᵀy‖₁; margin = that bound
-///   direction  d with h_X(d) > h_Y(d): X is not a subset of Y; margin = the difference. Of two
-///   sets
+///   direction  d with h_X(d) > h_Y(d): X is not a subset of Y; margin = the difference.
+///              Of two sets
 ///              that are disjoint: d with h_X(d) + h_Y(-d) < 0; margin = minus the sum
 ///   structure  follows from the representation alone (no constraints, no lines)
-///   rows       (y, λ) of a view with inequalities (solvers/view_questions.hpp); margin = the
-///   bound,
+///   rows       (y, λ) of a view with inequalities (solvers/view_questions.hpp); margin =
+///              the bound,
 ///              or by how much the set is empty or the point outside
 /// The numbers are those of a solver: equations hold up to rounding, and the check restores them
 /// exactly. For `contains` the set is {(δ, ξ)} with the rows Mδ + Gξ = x - c below its own, for
