@@ -335,8 +335,7 @@ class Verification {
           [&] { return enclosed_successors(model, start, estimation.admissible_set, transition); }};
     };
     const bool follows = i == 0 || anew || row_before;
-    // an outer form that inequalities cut is larger than the set that was held
-    const bool holds_successors =
+    const bool holds_successors =  // not of an outer form, which inequalities cut
         estimation.follows_its_sets && (!row_before || row_before->rows.rows() == 0);
     if (!check.violation()) {
       if (formulas_ && step.consistent == Answer::no && formulas_->proves_none(options_.deadline)) {
