@@ -265,8 +265,7 @@ class Verification {
         check_step(p, i, *row, {margin, outputs}, F, follows ? &*row_before : nullptr, transition);
       if (outcome_.violation) return;
       sets_.expect_same_claims(step, *row);
-      if (!is_checked) continue;
-      if (options_.progress && Clock::now() - told > std::chrono::milliseconds(50)) {
+      if (is_checked && options_.progress && Clock::now() - told > std::chrono::milliseconds(50)) {
         options_.progress(names_, p, static_cast<std::int64_t>(i),
                           static_cast<std::int64_t>(estimation.steps.size()));
         told = Clock::now();
@@ -335,14 +334,15 @@ class Verification {
           [&] { return enclosed_successors(model, start, estimation.admissible_set, transition); }};
     };
     const bool follows = i == 0 || anew || row_before;
-    const bool holds_successors =  // not of an outer form, which inequalities cut
-        estimation.follows_its_sets && (!row_before || row_before->rows.rows() == 0);
+    const bool holds_successors =  // an outer form is larger than the set
+        estimation.follows_its_sets && (!row_before || row_before->exact_exchange);
     if (!check.violation()) {
       if (formulas_ && step.consistent == Answer::no && formulas_->proves_none(options_.deadline)) {
         ++found.proofs;
       } else if (!run_.model.is_linear()) {
         if (!samples_) samples_.emplace(run_.model, options_.seed);
-        const bool asked = follows && (holds_successors || !row_before);
+        const bool asked =
+            follows && (!row_before || (estimation.follows_its_sets && !row_before->is_cut()));
         found.by_supports += samples_->check(check, asked ? &start : nullptr, transition) ? 1 : 0;
       } else if (F && is_converted(*F)) {
         check.against(*F, follows ? successors_in(run_.model) : unknown_successors(row.set.dim()));

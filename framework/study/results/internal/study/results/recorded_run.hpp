@@ -109,6 +109,8 @@ struct RecordedSet {
   bool exact_exchange = true;  ///< `set` is the reported set, without inequalities
   LineForm set;
   Inequalities rows;  ///< that hold for the reported set
+  /// Is the form larger than the set by more than rounding?
+  bool is_cut() const { return rows.rows() > 0; }
   Certificate proof;
   std::vector<Certificate> hull_proofs;  ///< two per coordinate; none for an empty set
   std::int64_t line = 0;
