@@ -13,6 +13,7 @@
 #include "cordon/experiments/report.hpp"
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
+#include "run_failures.hpp"
 #include "run_report.hpp"
 #include "run_sweep.hpp"
 

@@ -18,9 +18,4 @@ std::string report_text(const Study& study, const RunOutcome& outcome,
                         const std::filesystem::path& out);
 std::string report_json(const Study& study, const RunOutcome& outcome);
 
-/// What went wrong, a sentence each: pipelines that stopped, guarantees that were violated.
-std::vector<std::string> complaints(const Study& study, const RunOutcome& outcome);
-/// The code of the worst outcome: a violated guarantee before errors of pipelines.
-Exit exit_of(const RunOutcome& outcome);
-
 }  // namespace cordon::apps

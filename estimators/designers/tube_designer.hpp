@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "designers/designer_parameters.hpp"
+#include "designers/linear_bank.hpp"
 
 namespace cordon::designers {
 
@@ -14,19 +15,6 @@ class Watch;
 
 /// Asked between the tubes and the pairs: is there no need to go on?
 using Stop = std::function<bool()>;
-
-/// The modes of a bank as linear models: those of formulas along their trajectories under one input
-/// sequence, for which alone they hold.
-struct LinearBank {
-  const ModeBank& bank;
-  std::vector<TimedModel> models;
-
-  /// Of a bank whose modes are linear.
-  explicit LinearBank(const ModeBank& modes);
-  /// Under an input, a row each. Errc::not_enclosed where a mode is not enclosed, or not shown to
-  /// keep to the region that its model is proven in.
-  LinearBank(const ModeBank& modes, const Matrix& u);
-};
 
 /// The problem at horizon N, but for its input set; nothing if it was stopped.
 std::optional<SeparationProblem> problem_at(const LinearBank& bank, const SetBackend& backend,

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "run/components.hpp"
+#include "run_failures.hpp"
 #include "run_report.hpp"
 
 using namespace cordon;

@@ -5,6 +5,7 @@
 
 #include "diagnosis_report.hpp"
 #include "run/components.hpp"
+#include "run_failures.hpp"
 #include "run_report.hpp"
 
 using namespace cordon;
