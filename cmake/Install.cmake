@@ -21,7 +21,7 @@ set_target_properties(cordon_invariant PROPERTIES EXPORT_NAME invariant)
 install(TARGETS cordon cordon_sdp cordon_study cordon_experiments cordon_sets cordon_invariant
   cordon_app EXPORT cordon
   RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
-foreach(room core formulas solvers sdp interfaces linearisation tubes registry study experiments)
+foreach(room core formulas solvers sdp interfaces linearisation tubes registry values study experiments)
   list(APPEND headers "${PROJECT_SOURCE_DIR}/framework/${room}/include/cordon")
 endforeach()
 install(DIRECTORY ${headers} "${PROJECT_BINARY_DIR}/framework/registry/include/cordon"

@@ -36,10 +36,10 @@ class StudyReader {
     source_->folder = (failure ? file : absolute).parent_path();
   }
 
-  Study read(const std::vector<std::string>& settings);
+  Study read(std::string text, const std::vector<std::string>& settings);
 
  private:
-  void parse_file(const std::vector<std::string>& settings);
+  void parse(std::string text, const std::vector<std::string>& settings);
   void load_plugins(const Cursor& root);
   bool is_trusted(const std::filesystem::path& directory) const;
   void pass_over(const Cursor& at, const std::filesystem::path& directory);
@@ -133,9 +133,9 @@ void StudyReader::finish(const std::vector<Diagnostic>& refusals) {
 }
 
 /// The file's tree, with the settings, and what is no study refused.
-void StudyReader::parse_file(const std::vector<std::string>& settings) {
-  source_->text = read_file(source_->file.string());
-  source_->tree = parse(source_->text, problems_);
+void StudyReader::parse(std::string text, const std::vector<std::string>& settings) {
+  source_->text = std::move(text);
+  source_->tree = json::parse(source_->text, problems_);
   const Cursor root(source_->tree, "", problems_);
   const std::string ending = source_->file.extension().string();
   if (problems_.any() && (ending == ".csv" || ending == ".mat")) {
@@ -157,8 +157,8 @@ void StudyReader::parse_file(const std::vector<std::string>& settings) {
   source_->text = written_json(source_->tree).dump(1);
 }
 
-Study StudyReader::read(const std::vector<std::string>& settings) {
-  parse_file(settings);
+Study StudyReader::read(std::string text, const std::vector<std::string>& settings) {
+  parse(std::move(text), settings);
   source_->sweep = read_sweep(Cursor(source_->tree, "", problems_));
   TreeReading reading = read_first_values(*source_, registry_, !problems_.any(), problems_);
   reading.refusals.insert(reading.refusals.begin(), untrusted_.begin(), untrusted_.end());
@@ -192,7 +192,13 @@ Study StudyReader::read(const std::vector<std::string>& settings) {
 
 Study read_study(const std::filesystem::path& file, Registry& registry, const SearchPath& path,
                  StudyPlugins plugins, StudyData data, const std::vector<std::string>& settings) {
-  return StudyReader(file, registry, path, plugins, data).read(settings);
+  return read_study_text(read_file(file.string()), file, registry, path, plugins, data, settings);
+}
+
+Study read_study_text(const std::string& text, const std::filesystem::path& file,
+                      Registry& registry, const SearchPath& path, StudyPlugins plugins,
+                      StudyData data, const std::vector<std::string>& settings) {
+  return StudyReader(file, registry, path, plugins, data).read(text, settings);
 }
 
 std::vector<std::pair<std::string, const ComponentSpec*>> algorithms_of(const PipelineSpec& spec) {

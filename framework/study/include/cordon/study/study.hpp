@@ -238,6 +238,14 @@ Study read_study(const std::filesystem::path& file, Registry& registry,
                  StudyPlugins plugins = StudyPlugins::refuse, StudyData data = StudyData::needed,
                  const std::vector<std::string>& settings = {});
 
+/// The same of a study that is a text in memory. `file` is its name in messages, and its folder is
+/// where the files are looked for that it names; no such file is opened.
+Study read_study_text(const std::string& text, const std::filesystem::path& file,
+                      Registry& registry, const SearchPath& path = default_search_path(),
+                      StudyPlugins plugins = StudyPlugins::refuse,
+                      StudyData data = StudyData::needed,
+                      const std::vector<std::string>& settings = {});
+
 /// JSON Schema (2020-12) of study files, with the components that the registry knows. For editors.
 std::string study_json_schema(const Registry& registry);
 

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/values/convex_set.hpp"
+
+#include <cmath>
+#include <ostream>
+
+#include "cordon/core/error.hpp"
+#include "cordon/solvers/polytope.hpp"
+
+namespace cordon {
+
+namespace {
+
+const SetBackend& of_left(const ConvexSet& X) { return X.backend(); }
+
+void expect_same_dimension(const ConvexSet& X, const ConvexSet& Y, const char* what) {
+  if (X.dim() == Y.dim()) return;
+  throw Error(Errc::dimension, std::string(what) + " of sets of " + std::to_string(X.dim()) +
+                                   " and " + std::to_string(Y.dim()) + " dimensions");
+}
+
+void expect_size(VectorIn x, const ConvexSet& X, const char* what) {
+  if (x.size() == X.dim()) return;
+  throw Error(Errc::dimension, std::string(what) + " has " + std::to_string(x.size()) +
+                                   " entries, the set is one of " + std::to_string(X.dim()) +
+                                   " dimensions");
+}
+
+/// Finds the t at which the answer to "x ∈ t X?" changes, between bounds of which the lower is
+/// proven to be too small and the upper to be enough.
+Interval bisected(const ConvexSet& X, VectorIn x, Interval bounds) {
+  constexpr double relative = 1e-12;
+  while (bounds.upper - bounds.lower > relative * bounds.upper) {
+    const double t = 0.5 * (bounds.lower + bounds.upper);
+    if (!(t > bounds.lower && t < bounds.upper)) break;
+    const Answer inside = X.contains(x / t);
+    if (inside == Answer::unknown) break;
+    (inside == Answer::yes ? bounds.upper : bounds.lower) = t;
+  }
+  return bounds;
+}
+
+void append_count(std::string& text, Index count, std::string name) {
+  if (count == 0) return;
+  if (count == 1 && name.ends_with('s')) name.pop_back();
+  text += (text.empty() ? "" : ", ") + std::to_string(count) + ' ' + name;
+}
+
+}  // namespace
+
+ConvexSet::ConvexSet(Enclosure X) : X_(std::move(X)) {
+  if (!X_.set) throw Error(Errc::invalid, "a set as a value needs a set");
+}
+
+ConvexSet ConvexSet::box(VectorIn lower, VectorIn upper) {
+  return cordon::representation("interval")->box({lower, upper});
+}
+
+ConvexSet ConvexSet::point(VectorIn x, std::string_view representation) {
+  return cordon::representation(representation)->point(x);
+}
+
+ConvexSet ConvexSet::zonotope(VectorIn c, MatrixIn G) {
+  return cordon::representation("zonotope")->import(make_zonotope(c, G));
+}
+
+ConvexSet ConvexSet::constrained_zonotope(VectorIn c, MatrixIn G, MatrixIn A, VectorIn b) {
+  const LineForm form{Matrix(c.size(), 0), G, c, Matrix(b.size(), 0), A, b};
+  return cordon::representation("constrained_zonotope")->import(form);
+}
+
+ConvexSet ConvexSet::line_zonotope(const LineForm& form) {
+  return cordon::representation("line_zonotope")->import(form);
+}
+
+ConvexSet ConvexSet::strip(VectorIn rho, double d, double sigma) {
+  return line_zonotope(make_strip(rho, d, sigma));
+}
+
+ConvexSet ConvexSet::space(Index n, std::string_view representation) {
+  return cordon::representation(representation)->space(n);
+}
+
+ConvexSet ConvexSet::empty(Index n, std::string_view representation) {
+  return cordon::representation(representation)->empty(n);
+}
+
+ConvexSet ConvexSet::of(const View& X, const std::shared_ptr<const SetBackend>& backend) {
+  if (!backend) throw Error(Errc::invalid, "a set needs a representation");
+  return backend->import(X);
+}
+
+ConvexSet ConvexSet::as(std::string_view representation, const Params& params) const {
+  return as(cordon::representation(representation, params));
+}
+
+ConvexSet ConvexSet::as(const std::shared_ptr<const SetBackend>& backend) const {
+  if (!backend) throw Error(Errc::invalid, "a set needs a representation");
+  return backend->import(X_);
+}
+
+ConvexSet operator*(MatrixIn A, const ConvexSet& X) {
+  return X.affine_map(A, Vector::Zero(A.rows()));
+}
+
+ConvexSet operator*(double s, const ConvexSet& X) {
+  return X.affine_map(s * Matrix::Identity(X.dim(), X.dim()), Vector::Zero(X.dim()));
+}
+
+ConvexSet operator+(const ConvexSet& X, const ConvexSet& Y) {
+  expect_same_dimension(X, Y, "sum");
+  return of_left(X).sum(X.X_, Y.X_);
+}
+
+ConvexSet operator+(const ConvexSet& X, VectorIn t) {
+  expect_size(t, X, "the translation");
+  return X.affine_map(Matrix::Identity(X.dim(), X.dim()), t);
+}
+
+ConvexSet operator&(const ConvexSet& X, const ConvexSet& Y) {
+  expect_same_dimension(X, Y, "intersection");
+  return X.intersect(Matrix::Identity(X.dim(), X.dim()), Y);
+}
+
+ConvexSet ConvexSet::affine_map(MatrixIn A, VectorIn t) const {
+  return of_left(*this).affine_map(X_, A, t);
+}
+
+ConvexSet ConvexSet::intersect(MatrixIn R, const ConvexSet& Y) const {
+  return of_left(*this).intersection(X_, R, Y.X_);
+}
+
+ConvexSet ConvexSet::correct(MatrixIn C, VectorIn y, const ConvexSet& V) const {
+  return of_left(*this).correct(X_, {C, y, {Matrix::Identity(y.size(), y.size()), V.X_}});
+}
+
+ConvexSet ConvexSet::interval_map(const IntervalMatrix& A) const {
+  return of_left(*this).interval_map(X_, A);
+}
+
+ConvexSet ConvexSet::product(const ConvexSet& Y) const { return of_left(*this).product(X_, Y.X_); }
+
+ConvexSet ConvexSet::convex_hull(const ConvexSet& Y) const {
+  expect_same_dimension(*this, Y, "convex hull");
+  return of_left(*this).convex_hull(X_, Y.X_);
+}
+
+ConvexSet ConvexSet::reduce(Index generators, Index constraints) const {
+  return of_left(*this).reduce(X_, {generators, constraints});
+}
+
+Answer ConvexSet::contains(VectorIn x, Certificate* why) const { return X_.set->contains(x, why); }
+
+Answer ConvexSet::is_subset(const ConvexSet& Y, Certificate* why) const {
+  return X_.set->is_subset_of(*Y.X_.set, why);
+}
+
+Answer ConvexSet::is_disjoint(const ConvexSet& Y, Certificate* why) const {
+  return X_.set->is_disjoint_from(*Y.X_.set, why);
+}
+
+double ConvexSet::support(VectorIn d, Vector* at, Certificate* why) const {
+  return X_.set->support(d, at, why);
+}
+
+Matrix ConvexSet::vertices() const {
+  const View seen = view();
+  if (seen.claim != Tightness::exact) {
+    throw Error(Errc::unsupported, "vertices: sets of \"" + representation() +
+                                       "\" tell no exact form; take vertices of an enclosure, "
+                                       "as(\"polytope\") or as(\"constrained_zonotope\")");
+  }
+  Polytope P = Polytope::from(seen.form);
+  if (seen.rows.rows() > 0)
+    P = P.intersection(Polytope::from_inequalities(seen.rows.H, seen.rows.h));
+  if (!P.is_empty() && !P.is_bounded())
+    throw Error(Errc::unsupported, "vertices: the set is unbounded");
+  return P.generators().vertices;
+}
+
+Interval ConvexSet::gauge(VectorIn x) const {
+  expect_size(x, *this, "the point");
+  if (contains(Vector::Zero(dim())) != Answer::yes)
+    throw Error(Errc::unsupported, "gauge: that the set holds 0 could not be proven");
+  if (x.isZero(0)) return {0, 0};
+  // t = 2ᵏ, so that x / t is exact.
+  constexpr int most = 200;
+  Interval found{0, infinity};
+  int k = 0;
+  Answer inside = contains(x);
+  const int step = inside == Answer::no ? 1 : -1;
+  for (; std::abs(k) <= most && inside != Answer::unknown; k += step) {
+    const double t = std::ldexp(1.0, k);
+    inside = contains(x / t);
+    if (inside == Answer::yes) found.upper = std::min(found.upper, t);
+    if (inside == Answer::no) found.lower = std::max(found.lower, t);
+    if (found.lower > 0 && found.upper < infinity) return bisected(*this, x, found);
+  }
+  return found;
+}
+
+std::string to_string(const ConvexSet& X) {
+  const Complexity size = X.complexity();
+  std::string counts;
+  append_count(counts, size.generators, "generators");
+  append_count(counts, size.lines, "lines");
+  append_count(counts, size.constraints, "constraints");
+  for (const Complexity::Named& other : size.others) append_count(counts, other.count, other.name);
+  return X.representation() + " in R^" + std::to_string(X.dim()) +
+         (counts.empty() ? "" : ": " + counts) + " (" + std::string(to_string(X.claim())) + ")";
+}
+
+std::ostream& operator<<(std::ostream& out, const ConvexSet& X) { return out << to_string(X); }
+
+}  // namespace cordon
