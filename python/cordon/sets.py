@@ -1,0 +1,331 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Convex sets as values.
+
+    import cordon as co
+    X = co.zonotope([0, 0], [[1, 0.5], [0, 1]])
+    W = co.interval([-0.1, -0.1], [0.1, 0.1])
+    Y = (A @ X + W).reduce(20)
+    Y.contains([0.3, 0.2]).yes
+
+Operations give a set of the left operand's representation that encloses the result. Arguments are
+arrays, lists or numpy scalars of any real dtype; wrong shapes, NaN and what holds no numbers are
+refused. Errors are `cordon.Error`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Tuple, Union
+
+import numpy as np
+
+from . import _cordon
+from .answers import Answer
+from .certificates import Certificate, Statement
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+
+class Hull(NamedTuple):
+    """A box around a set: `lower` and `upper`, shape (n,); `proofs` two per coordinate, of the upper
+    bound and of the lower one, None where there is none to check again."""
+
+    lower: Floats
+    upper: Floats
+    proofs: List[Optional[Certificate]]
+
+    @property
+    def widths(self) -> Floats:
+        return self.upper - self.lower
+
+
+class Support(NamedTuple):
+    """An upper bound of sup{dᵀx : x ∈ X}: +inf if unbounded or unsolved, -inf if proven empty; `at`
+    is a point of the set, up to rounding, where it is reached, None if none is known."""
+
+    value: float
+    at: Optional[Floats]
+    certificate: Optional[Certificate]
+
+
+class Volume(NamedTuple):
+    """The volume, or an upper bound of it."""
+
+    value: float
+    exact: bool
+
+
+class Set:
+    """A closed convex subset of Rⁿ in some representation; immutable, shared by copies, used from
+    several threads. Made by `interval`, `zonotope`, `constrained_zonotope`, `line_zonotope`,
+    `strip`, `point`, `space`, `empty`, `polytope`, and by operations:
+
+        A @ X     {A x}, A of shape (m, n)          X + Y   Minkowski sum; Y a set or a vector
+        s * X     {s x}, s a number                 X & Y   intersection
+        -X        {-x}
+    """
+
+    __slots__ = ("_set", "_view")
+    __array_ufunc__ = None  # numpy leaves A @ X and t + X to us
+
+    def __init__(self, made: _cordon.ConvexSet) -> None:
+        if not isinstance(made, _cordon.ConvexSet):
+            raise TypeError("sets are made by cordon.zonotope, cordon.interval and so on")
+        self._set = made
+        self._view: Optional[Dict[str, Any]] = None
+
+    # What it is
+
+    @property
+    def dim(self) -> int:
+        """n."""
+        return self._set.dim
+
+    @property
+    def representation(self) -> str:
+        """Name of the representation: "zonotope", "interval", …"""
+        return self._set.representation
+
+    @property
+    def claim(self) -> str:
+        """"exact": equal to the mathematical result; "outer": encloses it."""
+        return self._set.claim
+
+    @property
+    def sizes(self) -> Dict[str, int]:
+        """Numbers of generators, lines, constraints and what else the representation counts."""
+        return self._set.sizes
+
+    def view(self) -> Dict[str, Any]:
+        """The set as others compute with it: {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b} cut by H x ≤ h.
+        Arrays by name, and "claim": "exact", that is the set; "outer", it holds the set."""
+        if self._view is None:
+            self._view = self._set.view()
+        return {name: value.copy() if isinstance(value, np.ndarray) else value
+                for name, value in self._view.items()}
+
+    # Operations
+
+    def as_(self, representation: str, **parameters: Any) -> "Set":
+        """An enclosure in another representation ("polytope", rounding="outward", …)."""
+        return Set(self._set.as_(representation, parameters))
+
+    def __rmatmul__(self, A: ArrayLike) -> "Set":
+        return Set(self._set.map(A))
+
+    def __rmul__(self, s: Union[int, float]) -> "Set":
+        if isinstance(s, (bool, np.bool_)) or not np.isscalar(s) or isinstance(s, (str, bytes, complex)):
+            raise TypeError("a set is multiplied by a number; by a matrix it is A @ X")
+        return Set(self._set.scale(float(s)))  # type: ignore[arg-type]
+
+    __mul__ = __rmul__
+
+    def __neg__(self) -> "Set":
+        return Set(self._set.scale(-1.0))
+
+    def __add__(self, other: Union["Set", ArrayLike]) -> "Set":
+        if isinstance(other, Set):
+            return Set(self._set.sum(other._set))
+        return Set(self._set.translate(other))
+
+    def __radd__(self, other: ArrayLike) -> "Set":
+        return Set(self._set.translate(other))
+
+    def __sub__(self, t: ArrayLike) -> "Set":
+        if isinstance(t, Set):
+            raise TypeError("X - Y is no operation of sets here: the sum with {-y} is X + (-Y)")
+        return Set(self._set.translate(-np.asarray(t)))
+
+    def __and__(self, other: "Set") -> "Set":
+        return Set(self._set.intersection(_set(other, "the right operand of &")))
+
+    def affine_map(self, A: ArrayLike, t: ArrayLike) -> "Set":
+        """{A x + t}."""
+        return Set(self._set.affine_map(A, t))
+
+    def intersect(self, R: ArrayLike, other: "Set") -> "Set":
+        """{x ∈ X : R x ∈ other}, R of shape (other.dim, n)."""
+        return Set(self._set.intersect(R, _set(other, "other")))
+
+    def correct(self, C: ArrayLike, y: ArrayLike, V: "Set") -> "Set":
+        """{x ∈ X : y - C x ∈ V}: what a measurement leaves."""
+        return Set(self._set.correct(C, y, _set(V, "V")))
+
+    def product(self, other: "Set") -> "Set":
+        """X × other."""
+        return Set(self._set.product(_set(other, "other")))
+
+    def convex_hull(self, other: "Set") -> "Set":
+        """The closure of conv(X ∪ other)."""
+        return Set(self._set.convex_hull(_set(other, "other")))
+
+    def reduce(self, generators: Optional[int] = None, constraints: Optional[int] = None) -> "Set":
+        """An enclosure with at most so many generators and constraints."""
+        return Set(self._set.reduce(generators, constraints))
+
+    # Questions
+
+    def is_empty(self) -> Answer:
+        """X = ∅?"""
+        status, proof = self._set.is_empty()
+        return self._answer("is_empty", status, proof, Statement.of_emptiness(self, status))
+
+    def contains(self, x: ArrayLike) -> Answer:
+        """x ∈ X?"""
+        status, proof = self._set.contains(x)
+        point = np.array(x, dtype=np.float64)
+        return self._answer("contains", status, proof, Statement.of_point(self, point, status))
+
+    def is_subset(self, other: "Set") -> Answer:
+        """X ⊆ other?"""
+        status, proof = self._set.is_subset(_set(other, "other"))
+        return self._answer("is_subset", status, proof, Statement.of_subset(self, other, status))
+
+    def is_disjoint(self, other: "Set") -> Answer:
+        """X ∩ other = ∅?"""
+        status, proof = self._set.is_disjoint(_set(other, "other"))
+        return self._answer("is_disjoint", status, proof, Statement.of_disjoint(self, other, status))
+
+    def is_bounded(self) -> Answer:
+        """Is X bounded?"""
+        status, _ = self._set.is_bounded()
+        return Answer(status, question="is_bounded")
+
+    def _answer(self, question: str, status: str, proof: Optional[Tuple[Any, ...]],
+                statement: Statement) -> Answer:
+        if proof is None or status == "unknown":
+            return Answer(status, question=question)
+        certificate = Certificate(*proof, statement)
+        return Answer(status, certificate, certificate.witness(), question)
+
+    # Measures
+
+    def support(self, d: ArrayLike) -> Support:
+        """An upper bound of sup{dᵀx : x ∈ X}, with its proof."""
+        value, at, proof = self._set.support(d)
+        direction = np.array(d, dtype=np.float64)
+        statement = Statement.of_support(self, direction, value)
+        if proof is None and np.isfinite(value) and self._is_zonotope():
+            proof = ("structure", np.zeros(0), value)
+        return Support(value, at, None if proof is None else Certificate(*proof, statement))
+
+    def _is_zonotope(self) -> bool:
+        view = self.view()
+        return view["claim"] == "exact" and not (view["M"].size or view["b"].size or view["h"].size)
+
+    def hull(self) -> Hull:
+        """The smallest box around X as far as proven."""
+        lower, upper, proofs = self._set.hull()
+        made: List[Optional[Certificate]] = []
+        for i, proof in enumerate(proofs):
+            d = np.zeros(self.dim)
+            d[i // 2] = 1 if i % 2 == 0 else -1
+            bound = upper[i // 2] if i % 2 == 0 else -lower[i // 2]
+            made.append(None if proof is None else
+                        Certificate(*proof, Statement.of_support(self, d, bound)))
+        return Hull(lower, upper, made)
+
+    def volume(self) -> Volume:
+        """The volume, or an upper bound of it; +inf for unbounded sets with interior."""
+        return Volume(*self._set.volume())
+
+    def vertices(self) -> Floats:
+        """The vertices of a bounded polytope, n ≤ 6, shape (count, n), computed in exact arithmetic
+        and rounded to nearest; in two dimensions counter-clockwise."""
+        found = np.ascontiguousarray(self._set.vertices().T)
+        if self.dim == 2 and len(found) > 2:
+            middle = found - found.mean(axis=0)
+            found = found[np.argsort(np.arctan2(middle[:, 1], middle[:, 0]))]
+        return found
+
+    def gauge(self, x: ArrayLike) -> Tuple[float, float]:
+        """Proven bounds of inf{t ≥ 0 : x ∈ t X} for a set that holds 0."""
+        return self._set.gauge(x)
+
+    def plot(self, dims: Tuple[int, int] = (0, 1), ax: Any = None, **style: Any) -> Any:
+        """Draws two coordinates of the set with matplotlib; returns the axes."""
+        from . import plot
+        return plot.sets([self], dims, ax, **style)
+
+    # Copies and texts
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        view = self.view()
+        claim = "exact" if view.pop("claim") == "exact" and self.claim == "exact" else "outer"
+        return _restored, (view, claim, self.representation)
+
+    def __copy__(self) -> "Set":
+        return self
+
+    def __deepcopy__(self, _: Any) -> "Set":
+        return self
+
+    def __str__(self) -> str:
+        return str(self._set)
+
+    def __repr__(self) -> str:
+        return f"<{self._set}>"
+
+
+def _set(given: object, name: str) -> _cordon.ConvexSet:
+    if not isinstance(given, Set):
+        raise TypeError(f"{name}: a cordon set is needed, not {type(given).__name__}")
+    return given._set
+
+
+def _restored(blocks: Dict[str, Any], claim: str, representation: str) -> Set:
+    return Set(_cordon.ConvexSet.of_view(blocks, claim, representation, {}))
+
+
+def interval(lower: ArrayLike, upper: ArrayLike) -> Set:
+    """{x : lower ≤ x ≤ upper}, shapes (n,); infinite bounds in both directions only."""
+    return Set(_cordon.ConvexSet.box(lower, upper))
+
+
+def zonotope(c: ArrayLike, G: ArrayLike) -> Set:
+    """{c + Gξ : ‖ξ‖∞ ≤ 1}, shapes (n,) and (n, g)."""
+    return Set(_cordon.ConvexSet.zonotope(c, G))
+
+
+def constrained_zonotope(c: ArrayLike, G: ArrayLike, A: ArrayLike, b: ArrayLike) -> Set:
+    """{c + Gξ : ‖ξ‖∞ ≤ 1, Aξ = b}, shapes (n,), (n, g), (m, g), (m,)."""
+    blocks = {"c": c, "G": G, "A": A, "b": b}
+    return Set(_cordon.ConvexSet.of_view(blocks, "exact", "constrained_zonotope", {}))
+
+
+def line_zonotope(c: ArrayLike, M: ArrayLike, G: ArrayLike, S: Optional[ArrayLike] = None,
+                  A: Optional[ArrayLike] = None, b: Optional[ArrayLike] = None) -> Set:
+    """{c + Mδ + Gξ : δ ∈ Rˡ, ‖ξ‖∞ ≤ 1, Sδ + Aξ = b}."""
+    blocks = {"c": c, "M": M, "G": G, "S": S, "A": A, "b": b}
+    given = {name: value for name, value in blocks.items() if value is not None}
+    return Set(_cordon.ConvexSet.of_view(given, "exact", "line_zonotope", {}))
+
+
+def strip(rho: ArrayLike, d: float, sigma: float) -> Set:
+    """{x : |ρᵀx - d| ≤ σ}, a line zonotope."""
+    return Set(_cordon.ConvexSet.strip(rho, d, sigma))
+
+
+def point(x: ArrayLike, representation: str = "zonotope", **parameters: Any) -> Set:
+    """{x}."""
+    return Set(_cordon.ConvexSet.point(x, representation, parameters))
+
+
+def space(n: int, representation: str = "line_zonotope", **parameters: Any) -> Set:
+    """Rⁿ."""
+    return Set(_cordon.ConvexSet.space(n, representation, parameters))
+
+
+def empty(n: int, representation: str = "line_zonotope", **parameters: Any) -> Set:
+    """∅ in Rⁿ."""
+    return Set(_cordon.ConvexSet.empty(n, representation, parameters))
+
+
+def polytope(H: ArrayLike, h: ArrayLike, representation: str = "polytope",
+             **parameters: Any) -> Set:
+    """{x : H x ≤ h}, shapes (r, n) and (r,), enclosed by a representation."""
+    n = np.asarray(H).shape[1] if np.ndim(H) == 2 else 0
+    blocks = {"c": np.zeros(n), "M": np.eye(n), "G": np.zeros((n, 0)), "H": H, "h": h}
+    return Set(_cordon.ConvexSet.of_view(blocks, "exact", representation, parameters))

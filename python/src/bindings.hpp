@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parts of the extension, one function each.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "cordon/core/answer.hpp"
+#include "cordon/core/box.hpp"
+#include "cordon/core/line_form.hpp"
+#include "cordon/registry/schema.hpp"
+
+namespace cordon::python {
+
+namespace py = pybind11;
+
+void bind_errors(py::module_& module);
+void bind_sets(py::module_& module);
+void bind_components(py::module_& module);
+void bind_studies(py::module_& module);
+
+/// ("yes", (kind, data, margin) or None): what the package makes an Answer of.
+py::tuple answer_of(Answer answer, const Certificate& why);
+py::object certificate_of(const Certificate& why);
+py::tuple box_of(const Box& box);        ///< (lower, upper)
+py::dict form_of(const LineForm& form);  ///< blocks by name
+LineForm form_from(const py::dict& blocks);
+Params params_from(const py::dict& given);
+
+/// Without the interpreter's lock, so that other threads of Python run on.
+template <class Work>
+auto unlocked(Work&& work) {
+  const py::gil_scoped_release released;
+  return work();
+}
+
+}  // namespace cordon::python

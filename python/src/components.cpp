@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Observers, diagnosers and designers of a study's pipelines, one sample at a time.
+#include <atomic>
+#include <cmath>
+#include <pybind11/stl.h>
+#include <string>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "cordon/cordon.hpp"
+#include "cordon/study/design.hpp"
+#include "cordon/study/outcome.hpp"
+#include "study_handle.hpp"
+
+namespace cordon::python {
+
+namespace {
+
+const PipelineSpec& pipeline_of(const Study& study, std::size_t index) {
+  if (index >= study.pipelines.size())
+    throw py::index_error("there is no pipeline " + std::to_string(index));
+  return study.pipelines[index];
+}
+
+std::shared_ptr<const SetBackend> backend_of(const PipelineSpec& spec) {
+  return installed_components().make<BackendEntry>(spec.backend.type, spec.backend.params);
+}
+
+/// While one thread works with an object no other one can.
+class Turn {
+ public:
+  explicit Turn(std::atomic_flag& busy) : busy_(busy) {
+    if (busy_.test_and_set())
+      throw std::runtime_error(
+          "this object is at work in another thread: each thread needs its own");
+  }
+  ~Turn() { busy_.clear(); }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  std::atomic_flag& busy_;
+};
+
+/// The sample of the next time. NaN among the outputs is refused here: what is missing is named.
+Sample sample_of(Index k, py::handle u, py::handle y, const std::vector<Index>& missing) {
+  Sample sample{k, u.is_none() ? Vector(0) : vector_of(u, "u"), vector_of(y, "y")};
+  for (const Index i : missing) {
+    if (i < 0 || i >= sample.y.size())
+      throw py::index_error("missing: there is no output " + std::to_string(i));
+  }
+  for (Index i = 0; i < sample.y.size(); ++i) {
+    if (std::isnan(sample.y[i]) && std::find(missing.begin(), missing.end(), i) == missing.end()) {
+      throw py::value_error("y[" + std::to_string(i) + "] is NaN; an output without a value is " +
+                            "named: missing=[" + std::to_string(i) + "]");
+    }
+  }
+  return missing_outputs(std::move(sample), missing);
+}
+
+class ObserverHandle {
+ public:
+  ObserverHandle(StudyHandle study, std::size_t index) : study_(std::move(study)) {
+    const PipelineSpec& spec = pipeline_of(*study_, index);
+    const EstimationSpec* const estimation = spec.estimation();
+    if (!estimation) throw Error(Errc::invalid, "the pipeline has no observer");
+    unlocked([&] {
+      backend_ = backend_of(spec);
+      observer_ = installed_components().make<ObserverEntry>(
+          estimation->observer.type, {study_->model, backend_}, estimation->observer.params);
+      observer_->leave_out_outliers(estimation->outliers, estimation->outlier_window);
+      observer_->start();
+    });
+  }
+
+  void start(const std::optional<ConvexSet>& X0, Index k) {
+    const Turn turn(busy_);
+    unlocked([&] {
+      observer_->start(X0 ? std::optional(backend_->import(X0->enclosure())) : std::nullopt);
+    });
+    next_ = k;
+  }
+
+  py::tuple step(py::handle u, py::handle y, const std::vector<Index>& missing) {
+    const Turn turn(busy_);
+    const Sample sample = sample_of(next_, u, y, missing);
+    const Estimate estimate = unlocked([&] { return observer_->step(sample); });
+    ++next_;
+    return py::make_tuple(estimate.k, ConvexSet(estimate.set),
+                          answer_of(estimate.consistent, estimate.why));
+  }
+
+  void replace(const ConvexSet& X) {
+    const Turn turn(busy_);
+    unlocked([&] { observer_->replace(backend_->import(X.enclosure())); });
+  }
+
+  /// Of the last step, in µs.
+  py::dict times() const {
+    const PhaseTimes& times = observer_->times();
+    py::dict made;
+    made["predict"] = times.predict;
+    made["correct"] = times.correct;
+    made["reduce"] = times.reduce;
+    made["question"] = times.question;
+    return made;
+  }
+
+  py::list gains() const {
+    py::list made;
+    for (const Gain& gain : observer_->gains())
+      made.append(py::make_tuple(gain.name, gain.type, array_of(gain.L)));
+    return made;
+  }
+
+  py::object contradiction() const {
+    const auto& found = observer_->contradiction();
+    if (!found) return py::none();
+    py::dict made;
+    made["k"] = found->k;
+    made["output"] = found->output;
+    made["distance"] = found->distance;
+    made["before"] = found->before;
+    return made;
+  }
+
+  const std::vector<Index>& left_out() const { return observer_->left_out(); }
+  Index lag() const { return observer_->lag(); }
+  Index next() const { return next_; }
+
+ private:
+  StudyHandle study_;
+  std::shared_ptr<const SetBackend> backend_;
+  std::shared_ptr<Observer> observer_;
+  Index next_ = 0;
+  std::atomic_flag busy_;
+};
+
+py::dict evidence_of(const ModeEvidence& evidence) {
+  py::dict made;
+  made["candidate"] = evidence.candidate;
+  made["consistent"] = answer_of(evidence.consistent, evidence.why);
+  if (evidence.residual.dim() > 0) made["residual"] = box_of(evidence.residual);
+  if (!evidence.left_open.empty()) made["left_open"] = evidence.left_open;
+  return made;
+}
+
+py::dict diagnosis_of(const Diagnosis& found) {
+  py::dict made;
+  made["k"] = found.k;
+  made["decision"] = std::string(to_string(found.decision));
+  made["mode"] = found.mode;
+  made["since"] = found.since;
+  made["reset"] = found.reset;
+  made["suggested"] = found.suggested;
+  py::list modes, faults;
+  for (const ModeEvidence& evidence : found.modes) modes.append(evidence_of(evidence));
+  for (const FaultBound& bound : found.faults)
+    faults.append(py::make_tuple(bound.fault, bound.at, bound.lower, bound.upper, bound.estimate));
+  made["modes"] = modes;
+  made["faults"] = faults;
+  made["estimate"] = found.estimate ? py::cast(ConvexSet(*found.estimate)) : py::object(py::none());
+  return made;
+}
+
+class DiagnoserHandle {
+ public:
+  DiagnoserHandle(StudyHandle study, std::size_t index) : study_(std::move(study)) {
+    const PipelineSpec& spec = pipeline_of(*study_, index);
+    const ComponentSpec* wanted = nullptr;
+    for (const auto& [kind, component] : algorithms_of(spec)) {
+      if (kind == "diagnoser") wanted = component;
+    }
+    if (!wanted) throw Error(Errc::invalid, "the pipeline has no diagnoser");
+    unlocked([&] {
+      diagnoser_ = installed_components().make<DiagnoserEntry>(
+          wanted->type, {bank_of(*study_), backend_of(spec)}, wanted->params);
+      diagnoser_->start();
+    });
+  }
+
+  void start(Index k) {
+    const Turn turn(busy_);
+    unlocked([&] { diagnoser_->start(); });
+    next_ = k;
+  }
+
+  py::dict step(py::handle u, py::handle y, const std::vector<Index>& missing) {
+    const Turn turn(busy_);
+    const Sample sample = sample_of(next_, u, y, missing);
+    const Diagnosis found = unlocked([&] { return diagnoser_->step(sample); });
+    ++next_;
+    return diagnosis_of(found);
+  }
+
+  py::object guarantees() {
+    const Turn turn(busy_);
+    const auto found = unlocked([&] { return diagnoser_->guarantees(); });
+    if (!found) return py::none();
+    return py::str(json_of(*found, modes()));
+  }
+
+  std::vector<std::string> modes() const {
+    std::vector<std::string> names;
+    for (const Mode& mode : diagnoser_->bank().modes) names.push_back(mode.name);
+    return names;
+  }
+  Index next() const { return next_; }
+
+ private:
+  StudyHandle study_;
+  std::shared_ptr<Diagnoser> diagnoser_;
+  Index next_ = 0;
+  std::atomic_flag busy_;
+};
+
+/// Designs of a study's pipelines as JSON, with what is proven of each.
+py::list design(const StudyHandle& study, const std::string& pipeline) {
+  DesignOptions options;
+  options.pipeline = pipeline;
+  const auto designs =
+      unlocked([&] { return design_study(*study, installed_components(), options); });
+  std::vector<std::string> modes;
+  for (const Mode& mode : bank_of(*study).modes) modes.push_back(mode.name);
+  py::list made;
+  for (const PipelineDesign& found : designs) {
+    py::dict one;
+    one["name"] = found.name;
+    one["error"] = found.error;
+    one["refuted"] = found.refuted;
+    one["design_s"] = found.design_s;
+    one["outcome"] = found.outcome ? json_of(*found.outcome, modes) : "null";
+    one["exact"] = found.exact ? json_of(*found.exact, modes) : "null";
+    if (found.outcome && found.outcome->best) one["u"] = array_of(found.outcome->best->u);
+    made.append(one);
+  }
+  return made;
+}
+
+}  // namespace
+
+void bind_components(py::module_& module) {
+  py::class_<ObserverHandle>(module, "Observer")
+      .def(py::init<StudyHandle, std::size_t>())
+      .def("start", &ObserverHandle::start)
+      .def("step", &ObserverHandle::step)
+      .def("replace", &ObserverHandle::replace)
+      .def_property_readonly("times", &ObserverHandle::times)
+      .def_property_readonly("gains", &ObserverHandle::gains)
+      .def_property_readonly("contradiction", &ObserverHandle::contradiction)
+      .def_property_readonly("left_out", &ObserverHandle::left_out)
+      .def_property_readonly("lag", &ObserverHandle::lag)
+      .def_property_readonly("next", &ObserverHandle::next);
+  py::class_<DiagnoserHandle>(module, "Diagnoser")
+      .def(py::init<StudyHandle, std::size_t>())
+      .def("start", &DiagnoserHandle::start)
+      .def("step", &DiagnoserHandle::step)
+      .def("guarantees", &DiagnoserHandle::guarantees)
+      .def_property_readonly("modes", &DiagnoserHandle::modes)
+      .def_property_readonly("next", &DiagnoserHandle::next);
+  module.def("design", &design);
+  module.def("components",
+             [](const std::string& kind) { return installed_components().names(kind); });
+  module.def("kinds", [] { return Registry::kinds(); });
+}
+
+}  // namespace cordon::python

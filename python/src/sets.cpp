@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sets, with their operations and questions.
+#include <pybind11/stl.h>
+#include <string>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "cordon/values/convex_set.hpp"
+
+namespace cordon::python {
+
+namespace {
+
+std::shared_ptr<const SetBackend> backend_of(const std::string& name, const py::dict& params) {
+  const Params given = params_from(params);
+  return unlocked([&] { return representation(name, given); });
+}
+
+Inequalities inequalities_from(py::handle H, py::handle h) {
+  return {matrix_of(H, "H"), vector_of(h, "h")};
+}
+
+py::dict view_of(const ConvexSet& X) {
+  const View seen = unlocked([&] { return X.view(); });
+  py::dict made = form_of(seen.form);
+  made["H"] = array_of(seen.rows.rows() > 0 ? seen.rows.H : Matrix(0, seen.dim()));
+  made["h"] = array_of(seen.rows.h);
+  made["claim"] = std::string(to_string(seen.claim));
+  return made;
+}
+
+ConvexSet of_view(const py::dict& blocks, const std::string& claim, const std::string& backend,
+                  const py::dict& params) {
+  View X{form_from(blocks)};
+  if (blocks.contains("H")) {
+    X.rows = inequalities_from(blocks["H"], blocks["h"]);
+    if (X.rows.rows() == 0) X.rows = {};
+  }
+  X.claim = claim == "exact" ? Tightness::exact : Tightness::outer;
+  check(X, "the set");
+  const auto made = backend_of(backend, params);
+  return unlocked([&] { return ConvexSet::of(X, made); });
+}
+
+py::dict sizes_of(const ConvexSet& X) {
+  const Complexity size = X.complexity();
+  py::dict made;
+  made["generators"] = size.generators;
+  made["lines"] = size.lines;
+  made["constraints"] = size.constraints;
+  for (const Complexity::Named& other : size.others) made[py::str(other.name)] = other.count;
+  return made;
+}
+
+py::tuple support_of(const ConvexSet& X, py::handle direction) {
+  const Vector d = vector_of(direction, "d");
+  Vector at;
+  Certificate why;
+  const double value = unlocked([&] { return X.support(d, &at, &why); });
+  return py::make_tuple(value, at.size() == X.dim() ? py::object(array_of(at)) : py::none(),
+                        certificate_of(why));
+}
+
+py::tuple hull_of(const ConvexSet& X) {
+  std::vector<Certificate> why;
+  const Box hull = unlocked([&] { return X.hull(&why); });
+  py::list proofs;
+  for (const Certificate& proof : why) proofs.append(certificate_of(proof));
+  return py::make_tuple(array_of(hull.lower), array_of(hull.upper), proofs);
+}
+
+template <class Ask>
+py::tuple asked(Ask&& ask) {
+  Certificate why;
+  const Answer answer = unlocked([&] { return ask(&why); });
+  return answer_of(answer, why);
+}
+
+void bind_constructors(py::class_<ConvexSet>& set) {
+  set.def_static("box",
+                 [](py::handle lower, py::handle upper) {
+                   return ConvexSet::box(vector_of(lower, "lower"), vector_of(upper, "upper"));
+                 })
+      .def_static("zonotope",
+                  [](py::handle c, py::handle G) {
+                    return ConvexSet::zonotope(vector_of(c, "c"), matrix_of(G, "G"));
+                  })
+      .def_static("point",
+                  [](py::handle x, const std::string& name, const py::dict& params) -> ConvexSet {
+                    return backend_of(name, params)->point(vector_of(x, "x"));
+                  })
+      .def_static("space",
+                  [](Index n, const std::string& name, const py::dict& params) -> ConvexSet {
+                    return backend_of(name, params)->space(n);
+                  })
+      .def_static("empty",
+                  [](Index n, const std::string& name, const py::dict& params) -> ConvexSet {
+                    return backend_of(name, params)->empty(n);
+                  })
+      .def_static("strip",
+                  [](py::handle rho, double d, double sigma) {
+                    return ConvexSet::strip(vector_of(rho, "rho"), d, sigma);
+                  })
+      .def_static("of_view", &of_view);
+}
+
+void bind_operations(py::class_<ConvexSet>& set) {
+  set.def("as_",
+          [](const ConvexSet& X, const std::string& name, const py::dict& params) {
+            const auto backend = backend_of(name, params);
+            return unlocked([&] { return X.as(backend); });
+          })
+      .def("map",
+           [](const ConvexSet& X, py::handle A) {
+             const Matrix made = matrix_of(A, "A");
+             return unlocked([&] { return made * X; });
+           })
+      .def("scale", [](const ConvexSet& X, double s) { return unlocked([&] { return s * X; }); })
+      .def("translate",
+           [](const ConvexSet& X, py::handle t) {
+             const Vector made = vector_of(t, "t");
+             return unlocked([&] { return X + made; });
+           })
+      .def("affine_map",
+           [](const ConvexSet& X, py::handle A, py::handle t) {
+             const Matrix map = matrix_of(A, "A");
+             const Vector shift = vector_of(t, "t");
+             return unlocked([&] { return X.affine_map(map, shift); });
+           })
+      .def("sum",
+           [](const ConvexSet& X, const ConvexSet& Y) { return unlocked([&] { return X + Y; }); })
+      .def("intersection",
+           [](const ConvexSet& X, const ConvexSet& Y) { return unlocked([&] { return X & Y; }); })
+      .def("intersect",
+           [](const ConvexSet& X, py::handle R, const ConvexSet& Y) {
+             const Matrix made = matrix_of(R, "R");
+             return unlocked([&] { return X.intersect(made, Y); });
+           })
+      .def("correct",
+           [](const ConvexSet& X, py::handle C, py::handle y, const ConvexSet& V) {
+             const Matrix map = matrix_of(C, "C");
+             const Vector value = vector_of(y, "y");
+             return unlocked([&] { return X.correct(map, value, V); });
+           })
+      .def("product", [](const ConvexSet& X,
+                         const ConvexSet& Y) { return unlocked([&] { return X.product(Y); }); })
+      .def("convex_hull",
+           [](const ConvexSet& X, const ConvexSet& Y) {
+             return unlocked([&] { return X.convex_hull(Y); });
+           })
+      .def("reduce", [](const ConvexSet& X, std::optional<Index> generators,
+                        std::optional<Index> constraints) {
+        return unlocked([&] {
+          return X.reduce(generators.value_or(Budget::unlimited),
+                          constraints.value_or(Budget::unlimited));
+        });
+      });
+}
+
+void bind_questions(py::class_<ConvexSet>& set) {
+  set.def("is_empty",
+          [](const ConvexSet& X) {
+            return asked([&](Certificate* why) { return X.is_empty(why); });
+          })
+      .def("contains",
+           [](const ConvexSet& X, py::handle x) {
+             const Vector point = vector_of(x, "x");
+             return asked([&](Certificate* why) { return X.contains(point, why); });
+           })
+      .def("is_subset",
+           [](const ConvexSet& X, const ConvexSet& Y) {
+             return asked([&](Certificate* why) { return X.is_subset(Y, why); });
+           })
+      .def("is_disjoint",
+           [](const ConvexSet& X, const ConvexSet& Y) {
+             return asked([&](Certificate* why) { return X.is_disjoint(Y, why); });
+           })
+      .def("is_bounded",
+           [](const ConvexSet& X) { return asked([&](Certificate*) { return X.is_bounded(); }); });
+}
+
+}  // namespace
+
+void bind_sets(py::module_& module) {
+  py::class_<ConvexSet> set(module, "ConvexSet");
+  bind_constructors(set);
+  bind_operations(set);
+  bind_questions(set);
+  set.def_property_readonly("dim", &ConvexSet::dim)
+      .def_property_readonly("representation", &ConvexSet::representation)
+      .def_property_readonly("claim",
+                             [](const ConvexSet& X) { return std::string(to_string(X.claim())); })
+      .def_property_readonly("sizes", &sizes_of)
+      .def("view", &view_of)
+      .def("support", &support_of)
+      .def("hull", &hull_of)
+      .def("volume",
+           [](const ConvexSet& X) {
+             const Volume found = unlocked([&] { return X.volume(); });
+             return py::make_tuple(found.value, found.exact);
+           })
+      .def("vertices",
+           [](const ConvexSet& X) {
+             const Matrix found = unlocked([&] { return X.vertices(); });
+             return array_of(found);
+           })
+      .def("gauge",
+           [](const ConvexSet& X, py::handle x) {
+             const Vector point = vector_of(x, "x");
+             const Interval found = unlocked([&] { return X.gauge(point); });
+             return py::make_tuple(found.lower, found.upper);
+           })
+      .def("__str__", [](const ConvexSet& X) { return to_string(X); });
+}
+
+}  // namespace cordon::python
