@@ -4,20 +4,44 @@
     sets       convex sets as values, answers with proofs      cordon.zonotope, cordon.interval, …
     estimate   set-based observers, sample by sample           cordon.Observer
     diagnose   which faults are possible                       cordon.Diagnoser
-    design     inputs that tell faults apart                   cordon.design_inputs
+    design     inputs that tell faults apart                   cordon.design_input
     study      studies: read, changed, run, verified           cordon.Study
     results    what a run has left, as arrays                  cordon.Results
     plot       figures with matplotlib                         cordon.plot
 """
 
+from importlib import import_module
+from typing import Any, List
+
+from ._cordon import components as _components
 from .answers import Answer
 from .certificates import Certificate, Statement
+from .design import Design, design_input, designs_of
+from .diagnose import Diagnoser, Diagnosis, FaultBound
 from .errors import Error, InputError, Problem
+from .estimate import Estimate, Gain, Observer
+from .results import Pipeline, Results
 from .sets import (Hull, Set, Support, Volume, constrained_zonotope, empty, interval, line_zonotope,
                    point, polytope, space, strip, zonotope)
+from .study import Study, SweepResults
+from .written import Model
 
 __all__ = [
-    "Answer", "Certificate", "Error", "Hull", "InputError", "Problem", "Set", "Statement",
-    "Support", "Volume", "constrained_zonotope", "empty", "interval", "line_zonotope", "point",
-    "polytope", "space", "strip", "zonotope",
+    "Answer", "Certificate", "Design", "Diagnoser", "Diagnosis", "Error", "Estimate", "FaultBound",
+    "Gain", "Hull", "InputError", "Model", "Observer", "Pipeline", "Problem", "Results", "Set",
+    "Statement", "Study", "Support", "SweepResults", "Volume", "components", "constrained_zonotope",
+    "design_input", "designs_of", "empty", "interval", "line_zonotope", "point", "polytope", "space",
+    "strip", "zonotope",
 ]
+
+
+def components(kind: str) -> List[str]:
+    """Names of the components of a kind: "backend", "observer", "diagnoser", "designer", "gain",
+    "metric" or "plant"."""
+    return _components(kind)
+
+
+def __getattr__(name: str) -> Any:
+    if name == "plot":  # matplotlib is imported when something is drawn
+        return import_module(".plot", __name__)
+    raise AttributeError(f"module 'cordon' has no attribute {name!r}")

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Set-based observers, sample by sample.
+
+    observer = cordon.Observer("prediction_correction", model, backend="zonotope", max_generators=20)
+    for estimate in observer.run(u, y):
+        print(estimate.k, estimate.hull.lower, estimate.hull.upper)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Union
+
+import numpy as np
+
+from . import _cordon
+from .answers import Answer
+from .certificates import Certificate, Statement
+from .sets import Hull, Set
+from .written import Model, component_json, read
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from .study import Study
+
+
+class Estimate:
+    """What a sample has told: `set` holds every state of time `k` that model, bounds and the data so
+    far allow. `consistent.no`: the set is proven empty, so that the data contradict them."""
+
+    __slots__ = ("k", "set", "_answer", "_hull")
+
+    def __init__(self, k: int, made: _cordon.ConvexSet, answer: Any) -> None:
+        self.k = k
+        self.set = Set(made)
+        self._answer = answer
+        self._hull: Optional[Hull] = None
+
+    @property
+    def consistent(self) -> Answer:
+        """Is the set not empty?"""
+        status, proof = self._answer
+        if proof is None:
+            return Answer(status, question="consistent")
+        statement = Statement("empty" if status == "no" else "not empty", (self.set,))
+        return Answer(status, Certificate(*proof, statement), question="consistent")
+
+    @property
+    def hull(self) -> Hull:
+        """The bounds of every state, computed when first asked for."""
+        if self._hull is None:
+            self._hull = self.set.hull()
+        return self._hull
+
+    def __repr__(self) -> str:
+        return f"<estimate of time {self.k}: {self.set}, consistent: {self._answer[0]}>"
+
+
+class Gain(NamedTuple):
+    """A gain that an observer works with, shape (n, outputs)."""
+
+    name: str
+    type: str
+    L: "NDArray[np.float64]"
+
+
+class Observer:
+    """An observer of a model: `type`, and its parameters, as `cordon info` lists them; wrong ones
+    raise `InputError` with a suggestion. `backend` is the representation of its sets: a name, or a
+    dictionary with parameters, {"type": "zonotope", "rounding": "outward"}.
+
+    One thread at a time; other threads run on while it computes.
+    """
+
+    def __init__(self, type: str, model: Model, backend: Union[str, Mapping[str, Any]] = "zonotope",
+                 **parameters: Any) -> None:
+        pipeline = {"name": "observer", "backend": component_json(backend, where="backend"),
+                    "observer": component_json(type, parameters, "observer")}
+        self._made = _cordon.Observer(read(model.study([pipeline]), needs_data=False), 0)
+
+    @classmethod
+    def of(cls, study: "Study", pipeline: Union[str, int] = 0) -> "Observer":
+        """The observer of a study's pipeline."""
+        observer = object.__new__(cls)
+        observer._made = _cordon.Observer(study.checked(needs_data=False),
+                                          study.index_of(pipeline))
+        return observer
+
+    def start(self, X0: Optional[Set] = None, k: int = 0) -> None:
+        """Begins anew at time k, from X0 in place of the model's initial set."""
+        self._made.start(None if X0 is None else X0._set, k)
+
+    def step(self, u: "ArrayLike | None", y: "ArrayLike", missing: Sequence[int] = ()) -> Estimate:
+        """Takes the sample of the next time: the input u_k (None: the model has none) and the
+        outputs y_k. Outputs without a value are named by their indices in `missing`; NaN elsewhere
+        is refused."""
+        return Estimate(*self._made.step(u, y, missing))
+
+    def run(self, u: "ArrayLike | None", y: "ArrayLike", nan_is_missing: bool = False) -> Iterator[Estimate]:
+        """Steps over rows: u of shape (samples, inputs) or None, y of shape (samples, outputs). With
+        `nan_is_missing`, outputs that are NaN are missing ones."""
+        outputs = np.asarray(y)
+        inputs = None if u is None else np.asarray(u)
+        if outputs.ndim != 2 or (inputs is not None and inputs.ndim != 2):
+            raise ValueError("y and u are needed with a row per sample: shapes (samples, outputs) "
+                             f"and (samples, inputs), not {outputs.shape} and "
+                             f"{None if inputs is None else inputs.shape}")
+        if inputs is not None and len(inputs) != len(outputs):
+            raise ValueError(f"u has {len(inputs)} samples, y has {len(outputs)}")
+        return self._stepped(inputs, outputs, nan_is_missing)
+
+    def _stepped(self, inputs: Any, outputs: Any, nan_is_missing: bool) -> Iterator[Estimate]:
+        for i, row in enumerate(outputs):
+            missing: List[int] = np.flatnonzero(np.isnan(row)).tolist() if nan_is_missing else []
+            yield self.step(None if inputs is None else inputs[i], row, missing)
+
+    def replace(self, X: Set) -> None:
+        """Replaces the set of states at the time of the last sample."""
+        self._made.replace(X._set)
+
+    @property
+    def k(self) -> int:
+        """Time of the next sample."""
+        return self._made.next
+
+    @property
+    def lag(self) -> int:
+        """By how many samples estimates lag."""
+        return self._made.lag
+
+    @property
+    def gains(self) -> List[Gain]:
+        """The gains it works with."""
+        return [Gain(*gain) for gain in self._made.gains]
+
+    @property
+    def times(self) -> Dict[str, float]:
+        """Of the last step, in µs: predict, correct, reduce, question."""
+        return self._made.times
+
+    @property
+    def contradiction(self) -> Optional[Dict[str, Any]]:
+        """What the last sample contradicts, if its estimate is the first that is proven empty."""
+        return self._made.contradiction
+
+    @property
+    def left_out(self) -> List[int]:
+        """Outputs of the last sample that were left out as outliers."""
+        return self._made.left_out
