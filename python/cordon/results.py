@@ -96,7 +96,7 @@ class Pipeline:
     def frame(self) -> Any:
         """The steps as a pandas frame with the columns of steps.csv."""
         import pandas
-        rows = pandas.read_csv(self._results.directory / "steps.csv")
+        rows = pandas.read_csv(self._results.directory / "steps.csv", float_precision="round_trip")
         return rows[rows["pipeline"] == self.name].dropna(axis="columns", how="all")
 
     def __repr__(self) -> str:
@@ -163,7 +163,7 @@ class Results(Mapping[str, Pipeline]):
     def summary(self) -> Any:
         """A pandas frame with the numbers of all pipelines (summary.csv)."""
         import pandas
-        return pandas.read_csv(self.directory / "summary.csv")
+        return pandas.read_csv(self.directory / "summary.csv", float_precision="round_trip")
 
     def __repr__(self) -> str:
         return f"<results of {self.title!r}: {', '.join(self._pipelines)}>"

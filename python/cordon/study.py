@@ -148,7 +148,7 @@ class SweepResults(NamedTuple):
     def frame(self) -> Any:
         """points.csv as a pandas frame."""
         import pandas
-        return pandas.read_csv(self.directory / "points.csv")
+        return pandas.read_csv(self.directory / "points.csv", float_precision="round_trip")
 
 
 class _Bar:
