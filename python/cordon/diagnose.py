@@ -6,9 +6,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Union
 
-import numpy as np
-
 from . import _cordon
+from .samples import samples
 from .sets import Set
 from .written import Model, component_json, read
 
@@ -98,12 +97,10 @@ class Diagnoser:
         """Takes the sample of the next time, as `Observer.step` does."""
         return Diagnosis(self._made.step(u, y, missing), self.modes)
 
-    def run(self, u: "ArrayLike | None", y: "ArrayLike") -> Iterator[Diagnosis]:
-        """Steps over rows: u of shape (samples, inputs) or None, y of shape (samples, outputs)."""
-        outputs = np.asarray(y)
-        inputs = None if u is None else np.asarray(u)
-        for i, row in enumerate(outputs):
-            yield self.step(None if inputs is None else inputs[i], row)
+    def run(self, u: "ArrayLike | None", y: "ArrayLike",
+            nan_is_missing: bool = False) -> Iterator[Diagnosis]:
+        """Steps over rows, as `Observer.run` does."""
+        return (self.step(*sample) for sample in samples(u, y, nan_is_missing))
 
     def guarantees(self) -> Optional[Dict[str, Any]]:
         """What can be said before any experiment (docs/results_format.md); None: nothing."""

@@ -10,15 +10,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Union
 
-import numpy as np
-
 from . import _cordon
 from .answers import Answer
 from .certificates import Certificate, Statement
+from .samples import samples
 from .sets import Hull, Set
 from .written import Model, component_json, read
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     from .study import Study
@@ -99,20 +99,7 @@ class Observer:
     def run(self, u: "ArrayLike | None", y: "ArrayLike", nan_is_missing: bool = False) -> Iterator[Estimate]:
         """Steps over rows: u of shape (samples, inputs) or None, y of shape (samples, outputs). With
         `nan_is_missing`, outputs that are NaN are missing ones."""
-        outputs = np.asarray(y)
-        inputs = None if u is None else np.asarray(u)
-        if outputs.ndim != 2 or (inputs is not None and inputs.ndim != 2):
-            raise ValueError("y and u are needed with a row per sample: shapes (samples, outputs) "
-                             f"and (samples, inputs), not {outputs.shape} and "
-                             f"{None if inputs is None else inputs.shape}")
-        if inputs is not None and len(inputs) != len(outputs):
-            raise ValueError(f"u has {len(inputs)} samples, y has {len(outputs)}")
-        return self._stepped(inputs, outputs, nan_is_missing)
-
-    def _stepped(self, inputs: Any, outputs: Any, nan_is_missing: bool) -> Iterator[Estimate]:
-        for i, row in enumerate(outputs):
-            missing: List[int] = np.flatnonzero(np.isnan(row)).tolist() if nan_is_missing else []
-            yield self.step(None if inputs is None else inputs[i], row, missing)
+        return (self.step(*sample) for sample in samples(u, y, nan_is_missing))
 
     def replace(self, X: Set) -> None:
         """Replaces the set of states at the time of the last sample."""
