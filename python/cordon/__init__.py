@@ -8,11 +8,13 @@
     study      studies: read, changed, run, verified           cordon.Study
     results    what a run has left, as arrays                  cordon.Results
     plot       figures with matplotlib                         cordon.plot
+    extend     observers, metrics and plants in Python         cordon.extend.register
 """
 
 from importlib import import_module
 from typing import Any, List
 
+from . import extend
 from ._cordon import components as _components
 from .answers import Answer
 from .certificates import Certificate, Statement
@@ -20,6 +22,7 @@ from .design import Design, design_input, designs_of
 from .diagnose import Diagnoser, Diagnosis, FaultBound
 from .errors import Error, InputError, Problem
 from .estimate import Estimate, Gain, Observer
+from .extend import Law, conform
 from .results import Pipeline, Results
 from .sets import (Hull, Set, Support, Volume, constrained_zonotope, empty, interval, line_zonotope,
                    point, polytope, space, strip, zonotope)
@@ -28,9 +31,9 @@ from .written import Model
 
 __all__ = [
     "Answer", "Certificate", "Design", "Diagnoser", "Diagnosis", "Error", "Estimate", "FaultBound",
-    "Gain", "Hull", "InputError", "Model", "Observer", "Pipeline", "Problem", "Results", "Set",
-    "Statement", "Study", "Support", "SweepResults", "Volume", "components", "constrained_zonotope",
-    "design_input", "designs_of", "empty", "interval", "line_zonotope", "point", "polytope", "space",
+    "Gain", "Hull", "InputError", "Law", "Model", "Observer", "Pipeline", "Problem", "Results", "Set",
+    "Statement", "Study", "Support", "SweepResults", "Volume", "components", "conform",
+    "constrained_zonotope", "design_input", "designs_of", "empty", "extend", "interval", "line_zonotope", "point", "polytope", "space",
     "strip", "zonotope",
 ]
 

@@ -17,6 +17,7 @@ void bind_errors(py::module_& module);
 void bind_sets(py::module_& module);
 void bind_components(py::module_& module);
 void bind_studies(py::module_& module);
+void bind_extensions(py::module_& module);
 
 /// ("yes", (kind, data, margin) or None): what the package makes an Answer of.
 py::tuple answer_of(Answer answer, const Certificate& why);

@@ -8,4 +8,5 @@ PYBIND11_MODULE(_cordon, module) {
   cordon::python::bind_sets(module);
   cordon::python::bind_components(module);
   cordon::python::bind_studies(module);
+  cordon::python::bind_extensions(module);
 }
