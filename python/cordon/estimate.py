@@ -101,6 +101,12 @@ class Observer:
         `nan_is_missing`, outputs that are NaN are missing ones."""
         return (self.step(*sample) for sample in samples(u, y, nan_is_missing))
 
+    def estimates(self, u: "ArrayLike | None", y: "ArrayLike",
+                  nan_is_missing: bool = False) -> List[Estimate]:
+        """Takes all rows in one go, as `run` does one by one, and returns all estimates: the way for
+        long records, and for several observers in threads, which wait for each other otherwise."""
+        return [Estimate(*found) for found in self._made.estimates(u, y, nan_is_missing)]
+
     def replace(self, X: Set) -> None:
         """Replaces the set of states at the time of the last sample."""
         self._made.replace(X._set)

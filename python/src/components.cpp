@@ -86,8 +86,35 @@ class ObserverHandle {
     const Sample sample = sample_of(next_, u, y, missing);
     const Estimate estimate = unlocked([&] { return observer_->step(sample); });
     ++next_;
-    return py::make_tuple(estimate.k, ConvexSet(estimate.set),
-                          answer_of(estimate.consistent, estimate.why));
+    return told(estimate);
+  }
+
+  /// All rows in one go, without the lock of the interpreter.
+  py::list estimates(py::handle u, py::handle y, bool nan_is_missing) {
+    const Turn turn(busy_);
+    const Matrix outputs = matrix_of(y, "y");
+    const Matrix inputs = u.is_none() ? Matrix(outputs.rows(), 0) : matrix_of(u, "u");
+    if (inputs.rows() != outputs.rows()) {
+      throw py::value_error("u has " + std::to_string(inputs.rows()) + " samples, y has " +
+                            std::to_string(outputs.rows()));
+    }
+    if (!nan_is_missing && outputs.array().isNaN().any())
+      throw py::value_error(
+          "y holds NaN; where that means a missing output, say nan_is_missing=True");
+    std::vector<Estimate> found;
+    unlocked([&] {
+      for (Index i = 0; i < outputs.rows(); ++i, ++next_) {
+        const Vector row = outputs.row(i);
+        std::vector<Index> missing;
+        for (Index j = 0; j < row.size(); ++j) {
+          if (std::isnan(row[j])) missing.push_back(j);
+        }
+        found.push_back(observer_->step(missing_outputs({next_, inputs.row(i), row}, missing)));
+      }
+    });
+    py::list made;
+    for (const Estimate& estimate : found) made.append(told(estimate));
+    return made;
   }
 
   void replace(const ConvexSet& X) {
@@ -129,6 +156,11 @@ class ObserverHandle {
   Index next() const { return next_; }
 
  private:
+  static py::tuple told(const Estimate& estimate) {
+    return py::make_tuple(estimate.k, ConvexSet(estimate.set),
+                          answer_of(estimate.consistent, estimate.why));
+  }
+
   StudyHandle study_;
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Observer> observer_;
@@ -244,6 +276,7 @@ void bind_components(py::module_& module) {
       .def(py::init<StudyHandle, std::size_t>())
       .def("start", &ObserverHandle::start)
       .def("step", &ObserverHandle::step)
+      .def("estimates", &ObserverHandle::estimates)
       .def("replace", &ObserverHandle::replace)
       .def_property_readonly("times", &ObserverHandle::times)
       .def_property_readonly("gains", &ObserverHandle::gains)

@@ -161,6 +161,27 @@ def test_one_observer_in_two_threads_is_refused_or_in_turn():
     assert all(text == "taken" or "another thread" in text for text in outcomes)
 
 
+def test_all_rows_at_once():
+    rng = np.random.default_rng(4)
+    u, y = rng.uniform(-1, 1, (60, 1)), rng.uniform(-0.1, 0.1, (60, 1))
+    y[[7, 8, 30]] = np.nan
+    one_by_one = co.Observer("prediction_correction", mass())
+    at_once = co.Observer("prediction_correction", mass())
+    expected = list(one_by_one.run(u, y, nan_is_missing=True))
+    found = at_once.estimates(u, y, nan_is_missing=True)
+    assert [e.k for e in found] == list(range(60)) and at_once.k == 60
+    for mine, theirs in zip(found, expected):
+        assert mine.hull.upper.tobytes() == theirs.hull.upper.tobytes()
+        assert mine.consistent == theirs.consistent
+    with pytest.raises(ValueError, match="nan_is_missing"):
+        at_once.estimates(u, y)
+    with pytest.raises(ValueError, match="samples"):
+        at_once.estimates(u[:5], y, nan_is_missing=True)
+    with pytest.raises(co.Error):
+        at_once.estimates(np.zeros((3, 2)), np.zeros((3, 1)))
+    assert at_once.k == 60
+
+
 def test_gains_lag_and_times():
     observer = co.Observer("luenberger", mass(), gain="kalman")
     assert observer.gains[0].L.shape == (2, 1) and observer.lag == 0
