@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -21,7 +21,7 @@ class Answer:
     __slots__ = ("status", "certificate", "witness", "question")
 
     def __init__(self, status: str, certificate: Optional[Certificate] = None,
-                 witness: Optional[np.ndarray] = None, question: str = "the question") -> None:
+                 witness: "Optional[np.ndarray[Any, np.dtype[np.float64]]]" = None, question: str = "the question") -> None:
         self.status = status
         self.certificate = certificate
         self.witness = witness

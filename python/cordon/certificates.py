@@ -11,167 +11,34 @@ is of one of these kinds:
     direction  d, along which two sets are apart, or one reaches beyond the other
     structure  follows from the form alone: there are no constraints
 
-Solvers' numbers meet equations up to rounding only: they are moved onto them exactly first.
+Solvers' numbers meet equations up to rounding only: they are moved onto them exactly first. What a
+`direction` needs of the sets themselves is proven in the same way, after the library has proposed
+it. Sets without an exact form (ellipsoids) are the exception: how far they reach along a direction
+is taken from the library.
 """
 
 from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
 from . import rational
+from .forms import Form, bound_of, columns_of, has_no_solution, has_solution, onto
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from .sets import Set
 
-#: Bounds of representations with nominal rounding hold up to this share of the numbers in them.
-SLACK = 1e-14
+    Floats = NDArray[np.float64]
+    Bound = Union[Fraction, float]  # ±inf as a float
 
-
-class _Form:
-    """Blocks of a set as rational numbers."""
-
-    def __init__(self, view: Dict[str, Any]) -> None:
-        self.c = rational.vector(view["c"])
-        self.M = rational.matrix(view["M"])
-        self.G = rational.matrix(view["G"])
-        self.S = rational.matrix(view["S"])
-        self.A = rational.matrix(view["A"])
-        self.b = rational.vector(view["b"])
-        self.H = rational.matrix(view["H"])
-        self.h = rational.vector(view["h"])
-        self.lines = view["M"].shape[1]
-        self.generators = view["G"].shape[1]
-
-    def copy_of(self, **blocks: Any) -> "_Form":
-        made = object.__new__(_Form)
-        made.__dict__.update(self.__dict__)
-        made.__dict__.update(blocks)
-        return made
-
-    def at(self, x: List[Fraction]) -> "_Form":
-        """The factors that give x: rows Mδ + Gξ = x - c below the set's own."""
-        return self.copy_of(S=self.S + self.M, A=self.A + self.G,
-                            b=self.b + [a - c for a, c in zip(x, self.c)])
-
-    def met_by(self, other: "_Form") -> "_Form":
-        """The factors of both sets that give one point, and the first set's points."""
-        def beside(own: rational.Rows, columns: int, others: rational.Rows, own_columns: int,
-                   shared: Tuple[rational.Rows, rational.Rows]) -> rational.Rows:
-            zero = Fraction(0)
-            return ([row + [zero] * columns for row in own] +
-                    [[zero] * own_columns + row for row in others] +
-                    [a + [-v for v in b] for a, b in zip(*shared)])
-        zero = Fraction(0)
-        return self.copy_of(
-            lines=self.lines + other.lines, generators=self.generators + other.generators,
-            M=[row + [zero] * other.lines for row in self.M],
-            G=[row + [zero] * other.generators for row in self.G],
-            S=beside(self.S, other.lines, other.S, self.lines, (self.M, other.M)),
-            A=beside(self.A, other.generators, other.A, self.generators, (self.G, other.G)),
-            b=self.b + other.b + [a - c for a, c in zip(other.c, self.c)],
-            H=self.H + other.H, h=self.h + other.h)
-
-
-def _columns(A: rational.Rows, y: List[Fraction], columns: int) -> List[Fraction]:
-    return [rational.dot([row[j] for row in A], y) for j in range(columns)]
-
-
-def _onto(form: _Form, y: List[Fraction], d: Optional[List[Fraction]]) -> Optional[List[Fraction]]:
-    """y moved so that Sᵀy = Mᵀd (d None: 0), by as few entries as it takes."""
-    if form.lines == 0:
-        return y
-    target = _columns(form.M, d, form.lines) if d is not None else [Fraction(0)] * form.lines
-    missing = [t - v for t, v in zip(target, _columns(form.S, y, form.lines))]
-    if not any(missing):
-        return y
-    if not form.S:
-        return None
-    order = sorted(range(len(y)), key=lambda i: -abs(y[i]))
-    moved = rational.correction(rational.transposed(form.S, form.lines), missing, order)
-    return None if moved is None else [a + b for a, b in zip(y, moved)]
-
-
-def _form_bound(form: _Form, d: List[Fraction], y: List[Fraction]) -> Optional[Fraction]:
-    """dᵀc + bᵀy + ‖Gᵀd - Aᵀy‖₁ for a y moved onto Sᵀy = Mᵀd."""
-    moved = _onto(form, y, d)
-    if moved is None:
-        return None
-    spread = [a - b for a, b in zip(_columns(form.G, d, form.generators),
-                                    _columns(form.A, moved, form.generators))]
-    return (rational.dot(d, form.c) + rational.dot(form.b, moved) +
-            sum((abs(v) for v in spread), Fraction(0)))
-
-
-def _bound(form: _Form, d: List[Fraction], kind: str, data: List[Fraction]) -> Optional[Fraction]:
-    """An upper bound of dᵀx over the set, by a proof of kind dual, rows or structure."""
-    rows = len(form.b)
-    if kind == "structure":
-        return _form_bound(form, d, [Fraction(0)] * rows)
-    if kind == "dual" and len(data) == rows:
-        return _form_bound(form, d, data)
-    if kind == "rows" and len(data) == rows + len(form.h):
-        multipliers = data[rows:]
-        if any(v < 0 for v in multipliers):
-            return None
-        rest = [a - b for a, b in zip(d, _columns(form.H, multipliers, len(d)))]
-        bound = _form_bound(form, rest, data[:rows])
-        return None if bound is None else bound + rational.dot(form.h, multipliers)
-    return None
-
-
-def _has_no_solution(form: _Form, kind: str, data: List[Fraction]) -> bool:
-    if kind == "farkas" and len(data) == len(form.b):
-        y = _onto(form, data, None)
-        if y is None:
-            return False
-        reach = sum((abs(v) for v in _columns(form.A, y, form.generators)), Fraction(0))
-        return rational.dot(form.b, y) > reach
-    if kind == "structure":  # a row 0 = b
-        return any(b != 0 and not any(s) and not any(a)
-                   for s, a, b in zip(form.S, form.A, form.b))
-    if kind == "rows":
-        bound = _bound(form, [Fraction(0)] * len(form.c), kind, data)
-        return bound is not None and bound < 0
-    return False
-
-
-def _solution(form: _Form, data: List[Fraction]) -> Optional[List[Fraction]]:
-    """(δ, ξ) moved onto the constraints, if ‖ξ‖∞ ≤ 1 is kept."""
-    if len(data) != form.lines + form.generators:
-        return None
-    rows = [s + a for s, a in zip(form.S, form.A)]
-    missing = [b - v for b, v in zip(form.b, rational.product(rows, data))]
-    found = data
-    if any(missing):
-        def room(j: int) -> Fraction:  # free first, then those that are farthest from a bound
-            return Fraction(2) if j < form.lines else 1 - abs(data[j])
-        order = sorted(range(len(data)), key=lambda j: -room(j))
-        moved = rational.correction(rows, missing, order)
-        if moved is None:
-            return None
-        found = [a + b for a, b in zip(data, moved)]
-    return found if all(abs(v) <= 1 for v in found[form.lines:]) else None
-
-
-def _has_solution(form: _Form, kind: str, data: List[Fraction]) -> bool:
-    if kind == "structure":
-        return not form.b and not form.h
-    if kind != "point":
-        return False
-    found = _solution(form, data)
-    if found is None:
-        return False
-    x = _point(form, found)
-    return all(v <= h for v, h in zip(rational.product(form.H, x), form.h))
-
-
-def _point(form: _Form, factors: List[Fraction]) -> List[Fraction]:
-    both = [m + g for m, g in zip(form.M, form.G)]
-    return [c + v for c, v in zip(form.c, rational.product(both, factors))]
+#: Bounds of zonotopes and boxes hold up to rounding in the last place: this times the number of
+#: terms, as a share of the numbers in them.
+SLACK = Fraction(1, 2**52)
 
 
 class Statement(NamedTuple):
@@ -179,7 +46,7 @@ class Statement(NamedTuple):
 
     what: str  #: "empty", "not empty", "contains", "excludes", "support", …
     sets: Tuple["Set", ...]
-    vector: Optional[np.ndarray] = None  #: the point or the direction
+    vector: Optional[Floats] = None  #: the point or the direction
     bound: float = 0.0  #: of "support"
 
     @staticmethod
@@ -187,7 +54,7 @@ class Statement(NamedTuple):
         return Statement("empty" if status == "yes" else "not empty", (X,))
 
     @staticmethod
-    def of_point(X: "Set", x: np.ndarray, status: str) -> "Statement":
+    def of_point(X: "Set", x: Floats, status: str) -> "Statement":
         return Statement("contains" if status == "yes" else "excludes", (X,), x)
 
     @staticmethod
@@ -199,8 +66,21 @@ class Statement(NamedTuple):
         return Statement("disjoint" if status == "yes" else "meet", (X, Y))
 
     @staticmethod
-    def of_support(X: "Set", d: np.ndarray, bound: float) -> "Statement":
+    def of_support(X: "Set", d: Floats, bound: float) -> "Statement":
         return Statement("support", (X,), d, bound)
+
+    def is_well_formed(self) -> bool:
+        """Known, of sets of one dimension, with a finite vector of it where one is needed."""
+        rule = _RULES.get(self.what)
+        if rule is None or len(self.sets) != rule.sets or math.isnan(self.bound):
+            return False
+        n = self.sets[0].dim
+        if any(X.dim != n for X in self.sets):
+            return False
+        if not rule.vector:
+            return True
+        return (self.vector is not None and np.shape(self.vector) == (n,) and
+                bool(np.isfinite(self.vector).all()))
 
 
 class Certificate:
@@ -209,45 +89,69 @@ class Certificate:
 
     __slots__ = ("kind", "data", "margin", "statement")
 
-    def __init__(self, kind: str, data: np.ndarray, margin: float, statement: Statement) -> None:
+    def __init__(self, kind: str, data: Floats, margin: float, statement: Statement) -> None:
         self.kind = kind
-        self.data = np.asarray(data, dtype=np.float64)
+        self.data = np.array(data, dtype=np.float64)
         self.margin = margin
         self.statement = statement
+        if self.data.ndim != 1:
+            raise ValueError("data: a vector is needed")
+
+    @staticmethod
+    def of(proof: Optional[Tuple[Any, ...]], statement: Statement) -> Optional["Certificate"]:
+        """What the library tells, if it can be checked: None where it is about the form of a set
+        that this form only holds, or where a bound is infinite."""
+        if proof is None or statement.what not in _RULES or statement.bound == math.inf:
+            return None
+        rule = _RULES[statement.what]
+        kind, data, margin = proof
+        if kind not in rule.kinds or not all(X.has_exact_form for X in statement.sets[:rule.exact]):
+            return None
+        return Certificate(kind, data, margin, statement)
 
     def check(self) -> bool:
         """Repeats the proof in rational arithmetic. False: this proof does not hold, which says
-        nothing of the statement itself. Bounds of representations with nominal rounding are compared
-        with a slack of 1e-14 of the numbers in them; `proven_bound` has none."""
-        if not np.isfinite(self.data).all():
+        nothing of the statement itself. Bounds of zonotopes and boxes are compared with a slack of
+        some units in the last place of the numbers in them; `proven_bound` has none."""
+        if not self.statement.is_well_formed() or not np.isfinite(self.data).all():
             return False
-        data = rational.vector(self.data)
-        forms = [_Form(X.view()) for X in self.statement.sets]
-        return _CHECKS[self.statement.what](self, forms, data)
+        rule = _RULES[self.statement.what]
+        forms = [Form(X.blocks()) for X in self.statement.sets]
+        if self.kind not in rule.kinds or not all(form.exact for form in forms[:rule.exact]):
+            return False
+        return bool(rule.check(self, forms, rational.vector(self.data)))
 
     def proven_bound(self) -> Optional[Fraction]:
-        """Of a support value: the bound that the proof proves, exactly. None: it proves none."""
-        if self.statement.what != "support" or self.statement.vector is None:
-            return None
-        form = _Form(self.statement.sets[0].view())
-        return _bound(form, rational.vector(self.statement.vector), self.kind,
-                      rational.vector(self.data))
+        """Of a support value: the bound that the proof proves, exactly. None: it proves none, or
+        that the set is empty."""
+        bound = self._proven()
+        return bound if isinstance(bound, Fraction) else None
 
-    def witness(self) -> Optional[np.ndarray]:
+    def _proven(self) -> Optional[Bound]:
+        """The same, -inf for a set that is proven empty."""
+        if self.statement.what != "support" or not self.statement.is_well_formed():
+            return None
+        if not np.isfinite(self.data).all() or self.statement.vector is None:
+            return None
+        form, data = Form(self.statement.sets[0].blocks()), rational.vector(self.data)
+        if self.kind == "farkas" or self.statement.bound == -math.inf:
+            return -math.inf if has_no_solution(form, self.kind, data) else None
+        return bound_of(form, rational.vector(self.statement.vector), self.kind, data)
+
+    def witness(self) -> Optional[Floats]:
         """A direction, or a point of the set (of both sets), that shows it; None for other kinds."""
         what, X = self.statement.what, self.statement.sets[0]
         if self.kind == "direction":
             return self.data.copy()
-        if what == "contains" or what == "excludes":
-            return self.statement.vector
+        if self.statement.vector is not None and what in ("contains", "excludes"):
+            return np.array(self.statement.vector, dtype=np.float64)
         if self.kind == "point":
-            view = X.view()
+            view = X.blocks()
             lines, generators = view["M"].shape[1], view["G"].shape[1]
-            l_all = len(self.data) - generators
-            if what == "meet":
-                l_all = lines + self.statement.sets[1].view()["M"].shape[1]
-            xi = self.data[l_all:l_all + generators]
-            return view["c"] + view["M"] @ self.data[:lines] + view["G"] @ xi
+            all_lines = sum(Y.blocks()["M"].shape[1] for Y in self.statement.sets)
+            xi = self.data[all_lines:all_lines + generators]
+            found: Floats = view["c"] + view["M"] @ self.data[:lines] + view["G"] @ xi
+            return found
         return None
 
     def __repr__(self) -> str:
@@ -259,58 +163,68 @@ class Certificate:
         return Certificate, (self.kind, self.data, self.margin, self.statement)
 
 
-def _upper(X: "Set", d: np.ndarray) -> Optional[Fraction]:
+def _vector(proof: Certificate) -> List[Fraction]:
+    """The point or the direction that the statement is about."""
+    given = proof.statement.vector
+    return [] if given is None else rational.vector(given)
+
+
+def _upper(X: "Set", d: Floats) -> Optional[Bound]:
     """A proven upper bound of dᵀx over X."""
-    if X.view()["claim"] != "exact" and X.representation == "ellipsoid":
-        return _ellipsoid_bound(X, d)
     found = X.support(d)
-    return None if found.certificate is None else found.certificate.proven_bound()
+    if found.certificate is not None:
+        return found.certificate._proven()
+    if X.has_exact_form or math.isnan(found.value) or found.value == math.inf:
+        return None
+    return found.value if math.isinf(found.value) else Fraction(found.value)
 
 
-def _ellipsoid_bound(X: "Set", d: np.ndarray) -> Optional[Fraction]:
-    value = X.support(d).value  # of a formula, without a proof of its own
-    return Fraction(value) if math.isfinite(value) else None
-
-
-def _lower(X: "Set", d: np.ndarray) -> Optional[Fraction]:
-    """dᵀx of a point that is proven to lie in X, near the largest."""
-    form = _Form(X.view())
+def _lower(X: "Set", form: Form, d: Floats) -> Optional[Bound]:
+    """dᵀx of a point that is proven to lie in X, near the largest; inf where a line of X makes it
+    as large as one likes."""
     direction = rational.vector(d)
-    at = X.support(d).at
-    if X.view()["claim"] != "exact" or form.h:
-        return None
-    if not form.b and form.lines == 0:
-        spread = sum((abs(v) for v in _columns(form.G, direction, form.generators)), Fraction(0))
+    if onto(form, [Fraction(0)] * len(form.b), direction) is None:
+        answer = X.is_empty()
+        certain = answer.no and answer.certificate is not None and answer.certificate.check()
+        return math.inf if certain else None
+    if not form.b and not form.h:
+        spread = sum((abs(v) for v in columns_of(form.G, direction, form.generators)), Fraction(0))
         return rational.dot(direction, form.c) + spread
-    proof = None if at is None else X.contains(at).certificate
-    if proof is None or proof.kind != "point":
+    return _reached(X, form, direction)
+
+
+def _reached(X: "Set", form: Form, d: List[Fraction]) -> Optional[Fraction]:
+    """dᵀx of a point near the farthest that is proven to lie in X."""
+    direction = np.array([float(v) for v in d])
+    top = X.support(direction).at
+    if top is None:
         return None
-    inward = [v if j < form.lines else v * (1 - Fraction(1, 10**12))
-              for j, v in enumerate(rational.vector(proof.data))]
-    found = _solution(form, inward)
-    return None if found is None else rational.dot(direction, _point(form, found))
+    proof = X.is_empty().certificate
+    middle = None if proof is None else proof.witness()
+    for share in (0.0, 1e-12, 1e-9, 1e-6, 1e-3):
+        x = top if middle is None else top + share * (middle - top)
+        found = X.contains(x).certificate
+        if found is not None and found.check() and found.statement.what == "contains":
+            return rational.dot(d, rational.vector(x))
+    return None
 
 
-def _check_support(proof: Certificate, forms: List[_Form], data: List[Fraction]) -> bool:
-    statement = proof.statement
-    assert statement.vector is not None
-    d = rational.vector(statement.vector)
-    if proof.kind == "farkas":
-        return _has_no_solution(forms[0], "farkas", data)
-    if math.isinf(statement.bound):
+def _check_support(proof: Certificate, forms: List[Form], data: List[Fraction]) -> bool:
+    statement, form = proof.statement, forms[0]
+    proven = proof._proven()
+    if proven is None or statement.bound == math.inf:
         return False
-    proven = _bound(forms[0], d, proof.kind, data)
-    if proven is None:
-        return False
-    form = forms[0]
+    if proven == -math.inf or statement.bound == -math.inf:
+        return proven == -math.inf
+    d = _vector(proof)
     size = sum((abs(a) * (abs(c) + sum((abs(g) for g in row), Fraction(0)))
                 for a, c, row in zip(d, form.c, form.G)), Fraction(0))
-    return proven <= Fraction(statement.bound) + Fraction(SLACK) * max(size, abs(proven))
+    slack = SLACK * (form.dim + form.generators + 2) * size if proof.kind == "structure" else 0
+    return bool(proven <= Fraction(statement.bound) + slack)
 
 
-def _check_excludes(proof: Certificate, forms: List[_Form], data: List[Fraction]) -> bool:
-    assert proof.statement.vector is not None
-    x = rational.vector(proof.statement.vector)
+def _check_excludes(proof: Certificate, forms: List[Form], data: List[Fraction]) -> bool:
+    x = _vector(proof)
     form = forms[0]
     if proof.kind == "rows":
         multipliers = data[len(form.b):]
@@ -319,43 +233,68 @@ def _check_excludes(proof: Certificate, forms: List[_Form], data: List[Fraction]
         excess = [v - h for v, h in zip(rational.product(form.H, x), form.h)]
         return rational.dot(multipliers, excess) > 0
     if proof.kind == "direction":
+        if len(data) != form.dim:
+            return False
         upper = _upper(proof.statement.sets[0], proof.data)
-        return upper is not None and rational.dot(data, x) > upper
-    return _has_no_solution(form.at(x), proof.kind, data)
+        return upper is not None and bool(rational.dot(data, x) > upper)
+    return has_no_solution(form.at(x), proof.kind, data)
 
 
-def _check_contains(proof: Certificate, forms: List[_Form], data: List[Fraction]) -> bool:
-    assert proof.statement.vector is not None
-    x = rational.vector(proof.statement.vector)
+def _check_contains(proof: Certificate, forms: List[Form], data: List[Fraction]) -> bool:
+    x = _vector(proof)
     kept = all(v <= h for v, h in zip(rational.product(forms[0].H, x), forms[0].h))
     form = forms[0].at(x).copy_of(H=[], h=[])
-    return kept and _has_solution(form, proof.kind, data)
+    return kept and has_solution(form, proof.kind, data)
 
 
-def _check_disjoint(proof: Certificate, forms: List[_Form], data: List[Fraction]) -> bool:
+def _check_disjoint(proof: Certificate, forms: List[Form], data: List[Fraction]) -> bool:
     if proof.kind == "direction":
         X, Y = proof.statement.sets
+        if len(data) != forms[0].dim:
+            return False
         above, below = _upper(X, proof.data), _upper(Y, -proof.data)
-        return above is not None and below is not None and above + below < 0
-    return _has_no_solution(forms[0].met_by(forms[1]), proof.kind, data)
+        return above is not None and below is not None and above < -below
+    return has_no_solution(forms[0].met_by(forms[1]), proof.kind, data)
 
 
-def _check_no_subset(proof: Certificate, forms: List[_Form], data: List[Fraction]) -> bool:
-    if proof.kind != "direction":
+def _check_no_subset(proof: Certificate, forms: List[Form], data: List[Fraction]) -> bool:
+    if len(data) != forms[0].dim:
         return False
     X, Y = proof.statement.sets
-    reached, bound = _lower(X, proof.data), _upper(Y, proof.data)
+    bound = _upper(Y, proof.data)
+    reached = None if bound is None else _lower(X, forms[0], proof.data)
     return reached is not None and bound is not None and reached > bound
 
 
-_CHECKS = {
-    "empty": lambda proof, forms, data: _has_no_solution(forms[0], proof.kind, data),
-    "not empty": lambda proof, forms, data: _has_solution(forms[0], proof.kind, data),
-    "contains": _check_contains,
-    "excludes": _check_excludes,
-    "support": _check_support,
-    "disjoint": _check_disjoint,
-    "meet": lambda proof, forms, data: _has_solution(forms[0].met_by(forms[1]), proof.kind, data),
-    "not a subset": _check_no_subset,
-    "subset": lambda proof, forms, data: _has_no_solution(forms[0], proof.kind, data),
+def _check_empty(proof: Certificate, forms: List[Form], data: List[Fraction]) -> bool:
+    return has_no_solution(forms[0], proof.kind, data)
+
+
+def _check_not_empty(proof: Certificate, forms: List[Form], data: List[Fraction]) -> bool:
+    return has_solution(forms[0], proof.kind, data)
+
+
+def _check_meet(proof: Certificate, forms: List[Form], data: List[Fraction]) -> bool:
+    return has_solution(forms[0].met_by(forms[1]), proof.kind, data)
+
+
+class _Rule(NamedTuple):
+    check: Callable[[Certificate, List[Form], List[Fraction]], bool]
+    kinds: Tuple[str, ...]
+    sets: int = 1
+    exact: int = 0  #: of so many of the sets, a form that only holds them does not do
+    vector: bool = False
+
+
+_NOTHING, _SOMETHING = ("farkas", "rows", "structure"), ("point", "structure")
+_RULES: Dict[str, _Rule] = {
+    "empty": _Rule(_check_empty, _NOTHING),
+    "not empty": _Rule(_check_not_empty, _SOMETHING, exact=1),
+    "contains": _Rule(_check_contains, _SOMETHING, exact=1, vector=True),
+    "excludes": _Rule(_check_excludes, _NOTHING + ("direction",), vector=True),
+    "support": _Rule(_check_support, ("dual",) + _NOTHING, vector=True),
+    "disjoint": _Rule(_check_disjoint, _NOTHING + ("direction",), sets=2),
+    "meet": _Rule(_check_meet, _SOMETHING, sets=2, exact=2),
+    "subset": _Rule(_check_empty, ("farkas", "rows"), sets=2),  # nothing is a part of everything
+    "not a subset": _Rule(_check_no_subset, ("direction",), sets=2, exact=1),
 }

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Sequence
+from typing import Any, NamedTuple, Sequence, Tuple
 
 
 class Problem(NamedTuple):
@@ -23,12 +23,12 @@ class Error(Exception):
     `problems` lists every problem of an input; of other errors it is empty.
     """
 
-    def __init__(self, message: str, code: str = "invalid", problems: Sequence[tuple] = ()) -> None:
+    def __init__(self, message: str, code: str = "invalid", problems: Sequence[Tuple[Any, ...]] = ()) -> None:
         super().__init__(message)
         self.code = code
         self.problems = [Problem(*problem) for problem in problems]
 
-    def __reduce__(self) -> tuple:
+    def __reduce__(self) -> Tuple[Any, ...]:
         return type(self), (str(self), self.code, [tuple(problem) for problem in self.problems])
 
 

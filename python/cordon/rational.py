@@ -4,17 +4,17 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Iterable, List, Optional, Sequence
+from typing import Any, Iterable, List, Optional, Sequence
 
 Row = List[Fraction]
 Rows = List[Row]
 
 
-def vector(values: Iterable[float]) -> Row:
+def vector(values: Iterable[Any]) -> Row:
     return [Fraction(float(value)) for value in values]
 
 
-def matrix(rows: Iterable[Iterable[float]]) -> Rows:
+def matrix(rows: Iterable[Iterable[Any]]) -> Rows:
     return [vector(row) for row in rows]
 
 

@@ -14,7 +14,7 @@ refused. Errors are `cordon.Error`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Tuple, Union
+from typing import (TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Optional, Tuple, Union)
 
 import numpy as np
 
@@ -67,13 +67,15 @@ class Set:
         -X        {-x}
     """
 
-    __slots__ = ("_set", "_view")
+    __slots__ = ("_set", "_view", "_parameters")
     __array_ufunc__ = None  # numpy leaves A @ X and t + X to us
 
-    def __init__(self, made: _cordon.ConvexSet) -> None:
+    def __init__(self, made: _cordon.ConvexSet,
+                 parameters: Optional[Mapping[str, Any]] = None) -> None:
         if not isinstance(made, _cordon.ConvexSet):
             raise TypeError("sets are made by cordon.zonotope, cordon.interval and so on")
         self._set = made
+        self._parameters = dict(parameters or {})  # of the representation, for copies elsewhere
         self._view: Optional[Dict[str, Any]] = None
 
     # What it is
@@ -101,69 +103,85 @@ class Set:
     def view(self) -> Dict[str, Any]:
         """The set as others compute with it: {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b} cut by H x ≤ h.
         Arrays by name, and "claim": "exact", that is the set; "outer", it holds the set."""
-        if self._view is None:
-            self._view = self._set.view()
         return {name: value.copy() if isinstance(value, np.ndarray) else value
-                for name, value in self._view.items()}
+                for name, value in self.blocks().items()}
+
+    def blocks(self) -> Dict[str, Any]:
+        """What `view` gives, made once; its arrays cannot be written to."""
+        if self._view is None:
+            made = self._set.view()
+            for value in made.values():
+                if isinstance(value, np.ndarray):
+                    value.flags.writeable = False
+            self._view = made
+        return self._view
+
+    @property
+    def has_exact_form(self) -> bool:
+        """Is the view the set itself, and not one that holds it?"""
+        return bool(self.blocks()["claim"] == "exact")
+
+    def _made(self, made: _cordon.ConvexSet) -> "Set":
+        return Set(made, self._parameters)
 
     # Operations
 
     def as_(self, representation: str, **parameters: Any) -> "Set":
         """An enclosure in another representation ("polytope", rounding="outward", …)."""
-        return Set(self._set.as_(representation, parameters))
+        return Set(self._set.as_(representation, parameters), parameters)
 
     def __rmatmul__(self, A: ArrayLike) -> "Set":
-        return Set(self._set.map(A))
+        return self._made(self._set.map(A))
 
-    def __rmul__(self, s: Union[int, float]) -> "Set":
-        if isinstance(s, (bool, np.bool_)) or not np.isscalar(s) or isinstance(s, (str, bytes, complex)):
+    def __rmul__(self, s: ArrayLike) -> "Set":
+        if np.ndim(s) != 0:
             raise TypeError("a set is multiplied by a number; by a matrix it is A @ X")
-        return Set(self._set.scale(float(s)))  # type: ignore[arg-type]
+        return self._made(self._set.scale(s))
 
     __mul__ = __rmul__
 
     def __neg__(self) -> "Set":
-        return Set(self._set.scale(-1.0))
+        return self._made(self._set.scale(-1.0))
 
     def __add__(self, other: Union["Set", ArrayLike]) -> "Set":
         if isinstance(other, Set):
-            return Set(self._set.sum(other._set))
-        return Set(self._set.translate(other))
+            return self._made(self._set.sum(other._set))
+        return self._made(self._set.translate(other))
 
     def __radd__(self, other: ArrayLike) -> "Set":
-        return Set(self._set.translate(other))
+        return self._made(self._set.translate(other))
 
     def __sub__(self, t: ArrayLike) -> "Set":
         if isinstance(t, Set):
             raise TypeError("X - Y is no operation of sets here: the sum with {-y} is X + (-Y)")
-        return Set(self._set.translate(-np.asarray(t)))
+        return self._made(self._set.translate_back(t))
 
     def __and__(self, other: "Set") -> "Set":
-        return Set(self._set.intersection(_set(other, "the right operand of &")))
+        return self._made(self._set.intersection(_set(other, "the right operand of &")))
 
     def affine_map(self, A: ArrayLike, t: ArrayLike) -> "Set":
         """{A x + t}."""
-        return Set(self._set.affine_map(A, t))
+        return self._made(self._set.affine_map(A, t))
 
     def intersect(self, R: ArrayLike, other: "Set") -> "Set":
         """{x ∈ X : R x ∈ other}, R of shape (other.dim, n)."""
-        return Set(self._set.intersect(R, _set(other, "other")))
+        return self._made(self._set.intersect(R, _set(other, "other")))
 
     def correct(self, C: ArrayLike, y: ArrayLike, V: "Set") -> "Set":
         """{x ∈ X : y - C x ∈ V}: what a measurement leaves."""
-        return Set(self._set.correct(C, y, _set(V, "V")))
+        return self._made(self._set.correct(C, y, _set(V, "V")))
 
     def product(self, other: "Set") -> "Set":
         """X × other."""
-        return Set(self._set.product(_set(other, "other")))
+        return self._made(self._set.product(_set(other, "other")))
 
     def convex_hull(self, other: "Set") -> "Set":
         """The closure of conv(X ∪ other)."""
-        return Set(self._set.convex_hull(_set(other, "other")))
+        return self._made(self._set.convex_hull(_set(other, "other")))
 
     def reduce(self, generators: Optional[int] = None, constraints: Optional[int] = None) -> "Set":
         """An enclosure with at most so many generators and constraints."""
-        return Set(self._set.reduce(generators, constraints))
+        return self._made(self._set.reduce(generators, constraints))
 
     # Questions
 
@@ -195,10 +213,9 @@ class Set:
 
     def _answer(self, question: str, status: str, proof: Optional[Tuple[Any, ...]],
                 statement: Statement) -> Answer:
-        if proof is None or status == "unknown":
-            return Answer(status, question=question)
-        certificate = Certificate(*proof, statement)
-        return Answer(status, certificate, certificate.witness(), question)
+        certificate = None if status == "unknown" else Certificate.of(proof, statement)
+        witness = None if certificate is None else certificate.witness()
+        return Answer(status, certificate, witness, question)
 
     # Measures
 
@@ -207,13 +224,15 @@ class Set:
         value, at, proof = self._set.support(d)
         direction = np.array(d, dtype=np.float64)
         statement = Statement.of_support(self, direction, value)
-        if proof is None and np.isfinite(value) and self._is_zonotope():
-            proof = ("structure", np.zeros(0), value)
-        return Support(value, at, None if proof is None else Certificate(*proof, statement))
+        return Support(value, at, Certificate.of(self._by_structure(value, proof), statement))
 
-    def _is_zonotope(self) -> bool:
-        view = self.view()
-        return view["claim"] == "exact" and not (view["M"].size or view["b"].size or view["h"].size)
+    def _by_structure(self, value: float, proof: Optional[Tuple[Any, ...]]) -> Any:
+        """The proof, or for sets without constraints that their form is one."""
+        blocks = self.blocks()
+        if proof is not None or not self.has_exact_form or value == np.inf:
+            return proof
+        is_plain = not blocks["b"].size and not blocks["h"].size
+        return ("structure", np.zeros(0), value) if is_plain or value == -np.inf else None
 
     def hull(self) -> Hull:
         """The smallest box around X as far as proven."""
@@ -223,8 +242,8 @@ class Set:
             d = np.zeros(self.dim)
             d[i // 2] = 1 if i % 2 == 0 else -1
             bound = upper[i // 2] if i % 2 == 0 else -lower[i // 2]
-            made.append(None if proof is None else
-                        Certificate(*proof, Statement.of_support(self, d, bound)))
+            made.append(Certificate.of(self._by_structure(bound, proof),
+                                       Statement.of_support(self, d, bound)))
         return Hull(lower, upper, made)
 
     def volume(self) -> Volume:
@@ -254,7 +273,10 @@ class Set:
     def __reduce__(self) -> Tuple[Any, ...]:
         view = self.view()
         claim = "exact" if view.pop("claim") == "exact" and self.claim == "exact" else "outer"
-        return _restored, (view, claim, self.representation)
+        parameters = dict(self._parameters)
+        if self._set.rounding != "nominal":
+            parameters.setdefault("rounding", self._set.rounding)
+        return _restored, (view, claim, self.representation, parameters)
 
     def __copy__(self) -> "Set":
         return self
@@ -275,8 +297,10 @@ def _set(given: object, name: str) -> _cordon.ConvexSet:
     return given._set
 
 
-def _restored(blocks: Dict[str, Any], claim: str, representation: str) -> Set:
-    return Set(_cordon.ConvexSet.of_view(blocks, claim, representation, {}))
+def _restored(blocks: Dict[str, Any], claim: str, representation: str,
+              parameters: Mapping[str, Any]) -> Set:
+    made = _cordon.ConvexSet.of_view(blocks, claim, representation, parameters)
+    return Set(made, parameters)
 
 
 def interval(lower: ArrayLike, upper: ArrayLike) -> Set:
@@ -310,22 +334,22 @@ def strip(rho: ArrayLike, d: float, sigma: float) -> Set:
 
 def point(x: ArrayLike, representation: str = "zonotope", **parameters: Any) -> Set:
     """{x}."""
-    return Set(_cordon.ConvexSet.point(x, representation, parameters))
+    return Set(_cordon.ConvexSet.point(x, representation, parameters), parameters)
 
 
 def space(n: int, representation: str = "line_zonotope", **parameters: Any) -> Set:
     """Rⁿ."""
-    return Set(_cordon.ConvexSet.space(n, representation, parameters))
+    return Set(_cordon.ConvexSet.space(n, representation, parameters), parameters)
 
 
 def empty(n: int, representation: str = "line_zonotope", **parameters: Any) -> Set:
     """∅ in Rⁿ."""
-    return Set(_cordon.ConvexSet.empty(n, representation, parameters))
+    return Set(_cordon.ConvexSet.empty(n, representation, parameters), parameters)
 
 
 def polytope(H: ArrayLike, h: ArrayLike, representation: str = "polytope",
              **parameters: Any) -> Set:
-    """{x : H x ≤ h}, shapes (r, n) and (r,), enclosed by a representation."""
-    n = np.asarray(H).shape[1] if np.ndim(H) == 2 else 0
-    blocks = {"c": np.zeros(n), "M": np.eye(n), "G": np.zeros((n, 0)), "H": H, "h": h}
-    return Set(_cordon.ConvexSet.of_view(blocks, "exact", representation, parameters))
+    """{x : H x ≤ h}, shapes (r, n) and (r,), enclosed by a representation: exactly by "polytope",
+    and by "constrained_zonotope" and "line_zonotope" where the set is bounded, or unbounded along
+    lines only, and no number has to be rounded."""
+    return Set(_cordon.ConvexSet.inequalities(H, h, representation, parameters), parameters)

@@ -16,8 +16,50 @@ std::string shape_of(const py::array& a) {
   return text + (a.ndim() == 1 ? ",)" : ")");
 }
 
+bool is_integer(const py::array& a) { return a.dtype().kind() == 'i' || a.dtype().kind() == 'u'; }
+
+[[noreturn]] void refuse_large(const char* name) {
+  throw py::value_error(std::string(name) + ": an integer beyond 2^53 need not be a double");
+}
+
+Doubles small_integers(const py::array& a, const char* name) {
+  Doubles doubles(a);
+  const double* const first = doubles.data();
+  for (py::ssize_t i = 0; i < doubles.size(); ++i) {
+    if (!(std::abs(first[i]) <= 0x1p53)) refuse_large(name);
+  }
+  return doubles;
+}
+
+/// What numpy makes an array of without a word, though something is lost: masks, and large integers
+/// among floating-point numbers.
+void refuse_losses(py::handle given, const char* name, int depth) {
+  if (py::isinstance<py::array>(given)) {
+    if (py::hasattr(given, "mask") && py::hasattr(given, "filled")) {
+      if (given.attr("mask").attr("any")().cast<bool>())
+        throw py::type_error(std::string(name) +
+                             ": entries of a masked array are masked, which are no numbers");
+    } else if (depth > 0) {
+      const auto a = py::reinterpret_borrow<py::array>(given);
+      if (is_integer(a)) small_integers(a, name);
+    }
+    return;
+  }
+  const bool is_list = py::isinstance<py::list>(given) || py::isinstance<py::tuple>(given);
+  if (is_list && depth < 4) {
+    for (const py::handle entry : given) refuse_losses(entry, name, depth + 1);
+  } else if (!is_list && PyIndex_Check(given.ptr()) != 0) {
+    const auto integer = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
+    if (!integer) throw py::error_already_set();
+    int overflow = 0;
+    const long long value = PyLong_AsLongLongAndOverflow(integer.ptr(), &overflow);
+    if (overflow != 0 || value > (1LL << 53) || value < -(1LL << 53)) refuse_large(name);
+  }
+}
+
 /// An array of numbers, as numpy makes it of what was given.
 Doubles numbers_of(py::handle given, const char* name, py::ssize_t dimensions) {
+  refuse_losses(given, name, 0);
   py::array a = py::array::ensure(given);
   if (!a) {
     PyErr_Clear();
@@ -27,26 +69,18 @@ Doubles numbers_of(py::handle given, const char* name, py::ssize_t dimensions) {
   }
   const char kind = a.dtype().kind();
   const bool is_nothing = a.size() == 0;  // an empty list has no dtype of its own
-  if (kind != 'f' && kind != 'i' && kind != 'u' && !is_nothing) {
+  if (kind != 'f' && !is_integer(a) && !is_nothing) {
     throw py::type_error(std::string(name) + ": real numbers are needed, this is an array of " +
                          py::str(a.dtype()).cast<std::string>());
   }
   if (a.ndim() != dimensions) {
-    throw py::value_error(std::string(name) + ": " +
-                          (dimensions == 1 ? "a vector is needed" : "a matrix is needed") +
-                          ", this has the shape " + shape_of(a));
+    const char* const needed[] = {"a number", "a vector", "a matrix"};
+    throw py::value_error(std::string(name) + ": " + needed[dimensions] +
+                          " is needed, this has the shape " + shape_of(a));
   }
   if (kind == 'f' && a.itemsize() > 8)
     throw py::type_error(std::string(name) + ": numbers of more than 64 bits would lose digits");
-  Doubles doubles(a);
-  if (kind == 'i' || kind == 'u') {
-    const double* const first = doubles.data();
-    for (py::ssize_t i = 0; i < doubles.size(); ++i) {
-      if (!(std::abs(first[i]) <= 0x1p53))
-        throw py::value_error(std::string(name) + ": an integer beyond 2^53 is no exact number");
-    }
-  }
-  return doubles;
+  return is_integer(a) ? small_integers(a, name) : Doubles(a);
 }
 
 }  // namespace
@@ -60,6 +94,20 @@ Matrix matrix_of(py::handle given, const char* name) {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Doubles a = numbers_of(given, name, 2);
   return Eigen::Map<const Rows>(a.data(), a.shape(0), a.shape(1));
+}
+
+double number_of(py::handle given, const char* name) { return *numbers_of(given, name, 0).data(); }
+
+Index count_of(py::handle given, const char* name) {
+  const std::string refusal = std::string(name) + ": an integer that is not negative is needed";
+  if (py::isinstance<py::bool_>(given) || PyIndex_Check(given.ptr()) == 0)
+    throw py::type_error(refusal);
+  const auto integer = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
+  if (!integer) throw py::error_already_set();
+  int overflow = 0;
+  const long long value = PyLong_AsLongLongAndOverflow(integer.ptr(), &overflow);
+  if (overflow != 0 || value < 0) throw py::value_error(refusal);
+  return value;
 }
 
 py::array_t<double> array_of(const Vector& v) {

@@ -11,14 +11,19 @@ namespace cordon::python {
 
 namespace {
 
-Matrix block_of(const py::dict& blocks, const char* name, Index rows) {
-  if (!blocks.contains(name)) return Matrix(rows, 0);
+Matrix block_of(const py::dict& blocks, const char* name, Index rows, Index columns) {
+  if (!blocks.contains(name)) return Matrix::Zero(rows, columns);
   return matrix_of(blocks[name], name);
 }
 
 Params::Value value_from(py::handle given, const char* name) {
   if (py::isinstance<py::bool_>(given)) return given.cast<bool>();
-  if (py::isinstance<py::int_>(given)) return given.cast<std::int64_t>();
+  if (py::isinstance<py::int_>(given)) {
+    int overflow = 0;
+    const std::int64_t value = PyLong_AsLongLongAndOverflow(given.ptr(), &overflow);
+    if (overflow != 0) throw py::value_error(std::string(name) + ": the integer is too large");
+    return value;
+  }
   if (py::isinstance<py::float_>(given)) return given.cast<double>();
   if (py::isinstance<py::str>(given)) return given.cast<std::string>();
   if (py::isinstance<ConvexSet>(given)) {
@@ -32,6 +37,8 @@ Params::Value value_from(py::handle given, const char* name) {
     PyErr_Clear();
     throw py::type_error(std::string(name) + ": a number, a text, an array or a set is needed");
   }
+  if (a.ndim() == 0 && a.itemsize() <= 8 && py::hasattr(given, "item"))  // a scalar of numpy's
+    return value_from(given.attr("item")(), name);
   if (a.ndim() == 1) return vector_of(given, name);
   return matrix_of(given, name);
 }
@@ -67,12 +74,10 @@ LineForm form_from(const py::dict& blocks) {
   LineForm form;
   form.c = vector_of(blocks["c"], "c");
   form.b = blocks.contains("b") ? vector_of(blocks["b"], "b") : Vector(0);
-  form.M = block_of(blocks, "M", form.c.size());
-  form.G = block_of(blocks, "G", form.c.size());
-  form.S = block_of(blocks, "S", form.b.size());
-  form.A = block_of(blocks, "A", form.b.size());
-  if (form.S.cols() == 0) form.S = Matrix::Zero(form.b.size(), form.M.cols());
-  if (form.A.cols() == 0) form.A = Matrix::Zero(form.b.size(), form.G.cols());
+  form.M = block_of(blocks, "M", form.c.size(), 0);
+  form.G = block_of(blocks, "G", form.c.size(), 0);
+  form.S = block_of(blocks, "S", form.b.size(), form.M.cols());
+  form.A = block_of(blocks, "A", form.b.size(), form.G.cols());
   check(form, "the set");
   return form;
 }

@@ -5,6 +5,8 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "cordon/core/error.hpp"
+#include "cordon/solvers/polytope.hpp"
 #include "cordon/values/convex_set.hpp"
 
 namespace cordon::python {
@@ -40,6 +42,35 @@ ConvexSet of_view(const py::dict& blocks, const std::string& claim, const std::s
   check(X, "the set");
   const auto made = backend_of(backend, params);
   return unlocked([&] { return ConvexSet::of(X, made); });
+}
+
+/// {x : H x ≤ h}. What holds no half-spaces gets the exchange form of the polyhedron, which is made
+/// by exact arithmetic.
+ConvexSet of_inequalities(py::handle H, py::handle h, const std::string& name,
+                          const py::dict& params) {
+  const Inequalities rows = inequalities_from(H, h);
+  const auto backend = backend_of(name, params);
+  return unlocked([&]() -> ConvexSet {
+    std::optional<ConvexSet> made;
+    try {
+      made = ConvexSet::of(with_rows({make_space(rows.H.cols())}, rows), backend);
+      if (made->claim() == Tightness::exact) return *made;
+    } catch (const Error& error) {
+      if (error.code() != Errc::unsupported) throw;
+    }
+    try {
+      const auto form = Polytope::from_inequalities(rows.H, rows.h).to_line_form();
+      return ConvexSet::of({form.form, {}, form.tightness}, backend);
+    } catch (const Error& error) {  // unbounded on one side, or too large
+      if (error.code() != Errc::unsupported || !made) throw;
+      return *made;
+    }
+  });
+}
+
+/// None: as many as there are.
+Index budget_of(py::handle given, const char* name) {
+  return given.is_none() ? Budget::unlimited : count_of(given, name);
 }
 
 py::dict sizes_of(const ConvexSet& X) {
@@ -90,17 +121,19 @@ void bind_constructors(py::class_<ConvexSet>& set) {
                     return backend_of(name, params)->point(vector_of(x, "x"));
                   })
       .def_static("space",
-                  [](Index n, const std::string& name, const py::dict& params) -> ConvexSet {
-                    return backend_of(name, params)->space(n);
+                  [](py::handle n, const std::string& name, const py::dict& params) -> ConvexSet {
+                    return backend_of(name, params)->space(count_of(n, "n"));
                   })
       .def_static("empty",
-                  [](Index n, const std::string& name, const py::dict& params) -> ConvexSet {
-                    return backend_of(name, params)->empty(n);
+                  [](py::handle n, const std::string& name, const py::dict& params) -> ConvexSet {
+                    return backend_of(name, params)->empty(count_of(n, "n"));
                   })
       .def_static("strip",
-                  [](py::handle rho, double d, double sigma) {
-                    return ConvexSet::strip(vector_of(rho, "rho"), d, sigma);
+                  [](py::handle rho, py::handle d, py::handle sigma) {
+                    return ConvexSet::strip(vector_of(rho, "rho"), number_of(d, "d"),
+                                            number_of(sigma, "sigma"));
                   })
+      .def_static("inequalities", &of_inequalities)
       .def_static("of_view", &of_view);
 }
 
@@ -115,10 +148,19 @@ void bind_operations(py::class_<ConvexSet>& set) {
              const Matrix made = matrix_of(A, "A");
              return unlocked([&] { return made * X; });
            })
-      .def("scale", [](const ConvexSet& X, double s) { return unlocked([&] { return s * X; }); })
+      .def("scale",
+           [](const ConvexSet& X, py::handle s) {
+             const double factor = number_of(s, "the factor");
+             return unlocked([&] { return factor * X; });
+           })
       .def("translate",
            [](const ConvexSet& X, py::handle t) {
              const Vector made = vector_of(t, "t");
+             return unlocked([&] { return X + made; });
+           })
+      .def("translate_back",
+           [](const ConvexSet& X, py::handle t) {
+             const Vector made = -vector_of(t, "t");
              return unlocked([&] { return X + made; });
            })
       .def("affine_map",
@@ -148,12 +190,10 @@ void bind_operations(py::class_<ConvexSet>& set) {
            [](const ConvexSet& X, const ConvexSet& Y) {
              return unlocked([&] { return X.convex_hull(Y); });
            })
-      .def("reduce", [](const ConvexSet& X, std::optional<Index> generators,
-                        std::optional<Index> constraints) {
-        return unlocked([&] {
-          return X.reduce(generators.value_or(Budget::unlimited),
-                          constraints.value_or(Budget::unlimited));
-        });
+      .def("reduce", [](const ConvexSet& X, py::handle generators, py::handle constraints) {
+        const Budget budget{budget_of(generators, "generators"),
+                            budget_of(constraints, "constraints")};
+        return unlocked([&] { return X.reduce(budget.generators, budget.constraints); });
       });
 }
 
@@ -190,6 +230,9 @@ void bind_sets(py::module_& module) {
       .def_property_readonly("representation", &ConvexSet::representation)
       .def_property_readonly("claim",
                              [](const ConvexSet& X) { return std::string(to_string(X.claim())); })
+      .def_property_readonly(
+          "rounding",
+          [](const ConvexSet& X) { return std::string(to_string(X.backend().info().rounding)); })
       .def_property_readonly("sizes", &sizes_of)
       .def("view", &view_of)
       .def("support", &support_of)

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sets in exchange form over the rational numbers, and what multipliers and points prove of them.
+
+{c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b}, cut by H x ≤ h. Kinds of proofs: certificates.py.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any, Dict, List, Optional, Tuple
+
+from . import rational
+
+
+class Form:
+    """Blocks of a set as rational numbers. `exact`: they are the set; else they hold it."""
+
+    def __init__(self, view: Dict[str, Any]) -> None:
+        self.c = rational.vector(view["c"])
+        self.M = rational.matrix(view["M"])
+        self.G = rational.matrix(view["G"])
+        self.S = rational.matrix(view["S"])
+        self.A = rational.matrix(view["A"])
+        self.b = rational.vector(view["b"])
+        self.H = rational.matrix(view["H"])
+        self.h = rational.vector(view["h"])
+        self.lines = view["M"].shape[1]
+        self.generators = view["G"].shape[1]
+        self.exact = view["claim"] == "exact"
+
+    @property
+    def dim(self) -> int:
+        return len(self.c)
+
+    def copy_of(self, **blocks: Any) -> "Form":
+        made = object.__new__(Form)
+        made.__dict__.update(self.__dict__)
+        made.__dict__.update(blocks)
+        return made
+
+    def at(self, x: List[Fraction]) -> "Form":
+        """The factors that give x: rows Mδ + Gξ = x - c below the set's own."""
+        return self.copy_of(S=self.S + self.M, A=self.A + self.G,
+                            b=self.b + [a - c for a, c in zip(x, self.c)])
+
+    def met_by(self, other: "Form") -> "Form":
+        """The factors of both sets that give one point, and the first set's points."""
+        def beside(own: rational.Rows, columns: int, others: rational.Rows, own_columns: int,
+                   shared: Tuple[rational.Rows, rational.Rows]) -> rational.Rows:
+            zero = Fraction(0)
+            return ([row + [zero] * columns for row in own] +
+                    [[zero] * own_columns + row for row in others] +
+                    [a + [-v for v in b] for a, b in zip(*shared)])
+        zero = Fraction(0)
+        return self.copy_of(
+            lines=self.lines + other.lines, generators=self.generators + other.generators,
+            M=[row + [zero] * other.lines for row in self.M],
+            G=[row + [zero] * other.generators for row in self.G],
+            S=beside(self.S, other.lines, other.S, self.lines, (self.M, other.M)),
+            A=beside(self.A, other.generators, other.A, self.generators, (self.G, other.G)),
+            b=self.b + other.b + [a - c for a, c in zip(other.c, self.c)],
+            H=self.H + other.H, h=self.h + other.h)
+
+
+def columns_of(A: rational.Rows, y: List[Fraction], columns: int) -> List[Fraction]:
+    return [rational.dot([row[j] for row in A], y) for j in range(columns)]
+
+
+def onto(form: Form, y: List[Fraction], d: Optional[List[Fraction]]) -> Optional[List[Fraction]]:
+    """y moved so that Sᵀy = Mᵀd (d None: 0), by as few entries as it takes."""
+    if form.lines == 0:
+        return y
+    target = columns_of(form.M, d, form.lines) if d is not None else [Fraction(0)] * form.lines
+    missing = [t - v for t, v in zip(target, columns_of(form.S, y, form.lines))]
+    if not any(missing):
+        return y
+    if not form.S:
+        return None
+    order = sorted(range(len(y)), key=lambda i: -abs(y[i]))
+    moved = rational.correction(rational.transposed(form.S, form.lines), missing, order)
+    return None if moved is None else [a + b for a, b in zip(y, moved)]
+
+
+def form_bound(form: Form, d: List[Fraction], y: List[Fraction]) -> Optional[Fraction]:
+    """dᵀc + bᵀy + ‖Gᵀd - Aᵀy‖₁ for a y moved onto Sᵀy = Mᵀd."""
+    moved = onto(form, y, d)
+    if moved is None:
+        return None
+    spread = [a - b for a, b in zip(columns_of(form.G, d, form.generators),
+                                    columns_of(form.A, moved, form.generators))]
+    return (rational.dot(d, form.c) + rational.dot(form.b, moved) +
+            sum((abs(v) for v in spread), Fraction(0)))
+
+
+def bound_of(form: Form, d: List[Fraction], kind: str, data: List[Fraction]) -> Optional[Fraction]:
+    """An upper bound of dᵀx over the set, by a proof of kind dual, rows or structure."""
+    rows = len(form.b)
+    if kind == "structure" and not data:
+        return form_bound(form, d, [Fraction(0)] * rows)
+    if kind == "dual" and len(data) == rows:
+        return form_bound(form, d, data)
+    if kind == "rows" and len(data) == rows + len(form.h):
+        multipliers = data[rows:]
+        if any(v < 0 for v in multipliers):
+            return None
+        rest = [a - b for a, b in zip(d, columns_of(form.H, multipliers, len(d)))]
+        bound = form_bound(form, rest, data[:rows])
+        return None if bound is None else bound + rational.dot(form.h, multipliers)
+    return None
+
+
+def has_no_solution(form: Form, kind: str, data: List[Fraction]) -> bool:
+    if kind == "farkas" and len(data) == len(form.b):
+        y = onto(form, data, None)
+        if y is None:
+            return False
+        reach = sum((abs(v) for v in columns_of(form.A, y, form.generators)), Fraction(0))
+        return rational.dot(form.b, y) > reach
+    if kind == "structure" and not data:  # a row 0 = b
+        return any(b != 0 and not any(s) and not any(a)
+                   for s, a, b in zip(form.S, form.A, form.b))
+    if kind == "rows":
+        bound = bound_of(form, [Fraction(0)] * len(form.c), kind, data)
+        return bound is not None and bound < 0
+    return False
+
+
+def solution_near(form: Form, data: List[Fraction]) -> Optional[List[Fraction]]:
+    """(δ, ξ) moved onto the constraints, if ‖ξ‖∞ ≤ 1 is kept."""
+    if len(data) != form.lines + form.generators:
+        return None
+    rows = [s + a for s, a in zip(form.S, form.A)]
+    missing = [b - v for b, v in zip(form.b, rational.product(rows, data))]
+    found = data
+    if any(missing):
+        def room(j: int) -> Fraction:  # free first, then those that are farthest from a bound
+            return Fraction(2) if j < form.lines else 1 - abs(data[j])
+        order = sorted(range(len(data)), key=lambda j: -room(j))
+        moved = rational.correction(rows, missing, order)
+        if moved is None:
+            return None
+        found = [a + b for a, b in zip(data, moved)]
+    return found if all(abs(v) <= 1 for v in found[form.lines:]) else None
+
+
+def has_solution(form: Form, kind: str, data: List[Fraction]) -> bool:
+    if kind == "structure" and not data:
+        return not form.b and not form.h
+    if kind != "point":
+        return False
+    found = solution_near(form, data)
+    if found is None:
+        return False
+    x = point_of(form, found)
+    return all(v <= h for v, h in zip(rational.product(form.H, x), form.h))
+
+
+def point_of(form: Form, factors: List[Fraction]) -> List[Fraction]:
+    both = [m + g for m, g in zip(form.M, form.G)]
+    return [c + v for c, v in zip(form.c, rational.product(both, factors))]
