@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional
-
-import numpy as np
+from typing import TYPE_CHECKING, Optional
 
 from .certificates import Certificate
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
 
 
 class Answer:
@@ -21,7 +25,7 @@ class Answer:
     __slots__ = ("status", "certificate", "witness", "question")
 
     def __init__(self, status: str, certificate: Optional[Certificate] = None,
-                 witness: "Optional[np.ndarray[Any, np.dtype[np.float64]]]" = None, question: str = "the question") -> None:
+                 witness: Optional[Floats] = None, question: str = "the question") -> None:
         self.status = status
         self.certificate = certificate
         self.witness = witness
@@ -43,8 +47,8 @@ class Answer:
         return self.status == "unknown"
 
     def __bool__(self) -> bool:
-        raise TypeError(f"{self.question} is answered by yes, no or unknown, which is no truth value: "
-                        "write .yes (proven), .no (proven not to be so), or compare .status")
+        raise TypeError(f"{self.question} is answered by yes, no or unknown, which is no truth "
+                        "value: write .yes (proven), .no (proven not to be so), or compare .status")
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, str):

@@ -21,12 +21,14 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, Optional, Tuple, Union
+from typing import (TYPE_CHECKING, Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Tuple,
+                    Union)
 
 import numpy as np
 
 from . import rational
-from .forms import Form, bound_of, columns_of, has_no_solution, has_solution, onto
+from .forms import (Form, bound_of, columns_of, has_no_solution, has_solution, onto, point_of,
+                    reached, solution_near)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,8 +38,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Bound = Union[Fraction, float]  # ±inf as a float
 
-#: Bounds of zonotopes and boxes hold up to rounding in the last place: this times the number of
-#: terms, as a share of the numbers in them.
+#: Bounds of zonotopes and boxes were rounded to nearest, and which multipliers are moved onto their
+#: equations is a choice: this times the number of terms, as a share of the numbers in them.
 SLACK = Fraction(1, 2**52)
 
 
@@ -84,8 +86,8 @@ class Statement(NamedTuple):
 
 
 class Certificate:
-    """A proof: `kind`, `data` (what the kind needs, shape (size,)), `margin` (by how much it holds),
-    and the `statement` that it proves."""
+    """A proof: `kind`, `data` (what the kind needs, shape (size,)), `margin` (by how much it
+    holds), and the `statement` that it proves."""
 
     __slots__ = ("kind", "data", "margin", "statement")
 
@@ -105,14 +107,16 @@ class Certificate:
             return None
         rule = _RULES[statement.what]
         kind, data, margin = proof
-        if kind not in rule.kinds or not all(X.has_exact_form for X in statement.sets[:rule.exact]):
+        exact = 1 if kind == "structure" else rule.exact
+        if kind not in rule.kinds or not all(X.has_exact_form for X in statement.sets[:exact]):
             return None
         return Certificate(kind, data, margin, statement)
 
     def check(self) -> bool:
         """Repeats the proof in rational arithmetic. False: this proof does not hold, which says
-        nothing of the statement itself. Bounds of zonotopes and boxes are compared with a slack of
-        some units in the last place of the numbers in them; `proven_bound` has none."""
+        nothing of the statement itself. Bounds by structure, and those of sets with lines, are
+        compared with a slack of some units in the last place of the numbers in them;
+        `proven_bound` has none."""
         if not self.statement.is_well_formed() or not np.isfinite(self.data).all():
             return False
         rule = _RULES[self.statement.what]
@@ -134,12 +138,12 @@ class Certificate:
         if not np.isfinite(self.data).all() or self.statement.vector is None:
             return None
         form, data = Form(self.statement.sets[0].blocks()), rational.vector(self.data)
-        if self.kind == "farkas" or self.statement.bound == -math.inf:
-            return -math.inf if has_no_solution(form, self.kind, data) else None
+        if has_no_solution(form, self.kind, data):
+            return -math.inf
         return bound_of(form, rational.vector(self.statement.vector), self.kind, data)
 
     def witness(self) -> Optional[Floats]:
-        """A direction, or a point of the set (of both sets), that shows it; None for other kinds."""
+        """A direction, or a point of the set (of both sets), that shows it; else None."""
         what, X = self.statement.what, self.statement.sets[0]
         if self.kind == "direction":
             return self.data.copy()
@@ -179,34 +183,35 @@ def _upper(X: "Set", d: Floats) -> Optional[Bound]:
     return found.value if math.isinf(found.value) else Fraction(found.value)
 
 
-def _lower(X: "Set", form: Form, d: Floats) -> Optional[Bound]:
-    """dᵀx of a point that is proven to lie in X, near the largest; inf where a line of X makes it
+def _reached(X: "Set", form: Form, d: Floats) -> Iterator[Bound]:
+    """dᵀx of points that are proven to lie in X, near the largest; inf where a line of X makes it
     as large as one likes."""
     direction = rational.vector(d)
+    inside: Optional[List[Fraction]] = None
+    if form.b or form.h:
+        proof = X.is_empty().certificate
+        if proof is None or proof.statement.what != "not empty" or not proof.check():
+            return
+        inside = solution_near(form, rational.vector(proof.data))
     if onto(form, [Fraction(0)] * len(form.b), direction) is None:
-        answer = X.is_empty()
-        certain = answer.no and answer.certificate is not None and answer.certificate.check()
-        return math.inf if certain else None
-    if not form.b and not form.h:
+        yield math.inf
+    elif inside is None:
         spread = sum((abs(v) for v in columns_of(form.G, direction, form.generators)), Fraction(0))
-        return rational.dot(direction, form.c) + spread
-    return _reached(X, form, direction)
-
-
-def _reached(X: "Set", form: Form, d: List[Fraction]) -> Optional[Fraction]:
-    """dᵀx of a point near the farthest that is proven to lie in X."""
-    direction = np.array([float(v) for v in d])
-    top = X.support(direction).at
-    if top is None:
-        return None
-    proof = X.is_empty().certificate
-    middle = None if proof is None else proof.witness()
-    for share in (0.0, 1e-12, 1e-9, 1e-6, 1e-3):
-        x = top if middle is None else top + share * (middle - top)
-        found = X.contains(x).certificate
-        if found is not None and found.check() and found.statement.what == "contains":
-            return rational.dot(d, rational.vector(x))
-    return None
+        yield rational.dot(direction, form.c) + spread
+    else:
+        x = point_of(form, inside)
+        yield rational.dot(direction, x)
+        found = X.support(d)
+        if found.certificate is not None and found.certificate.kind in ("dual", "rows"):
+            yield from reached(form, direction, rational.vector(found.certificate.data), inside)
+        middle: Floats = np.array([float(v) for v in x], dtype=np.float64)
+        if found.at is None:
+            return
+        for share in (0.0, 1e-9, 1e-6, 1e-3):
+            near = found.at + share * (middle - found.at)
+            point = X.contains(near).certificate
+            if point is not None and point.statement.what == "contains" and point.check():
+                yield rational.dot(direction, rational.vector(near))
 
 
 def _check_support(proof: Certificate, forms: List[Form], data: List[Fraction]) -> bool:
@@ -214,12 +219,14 @@ def _check_support(proof: Certificate, forms: List[Form], data: List[Fraction]) 
     proven = proof._proven()
     if proven is None or statement.bound == math.inf:
         return False
-    if proven == -math.inf or statement.bound == -math.inf:
+    if not isinstance(proven, Fraction) or statement.bound == -math.inf:
         return proven == -math.inf
-    d = _vector(proof)
-    size = sum((abs(a) * (abs(c) + sum((abs(g) for g in row), Fraction(0)))
-                for a, c, row in zip(d, form.c, form.G)), Fraction(0))
-    slack = SLACK * (form.dim + form.generators + 2) * size if proof.kind == "structure" else 0
+    slack = Fraction(0)
+    if proof.kind == "structure" or form.lines:
+        size = sum((abs(a) * (abs(c) + sum((abs(g) for g in row), Fraction(0)))
+                    for a, c, row in zip(_vector(proof), form.c, form.G)), abs(proven))
+        size += sum((abs(b * y) for b, y in zip(form.b, data)), Fraction(0))
+        slack = SLACK * (form.dim + form.generators + 2) * size
     return bool(proven <= Fraction(statement.bound) + slack)
 
 
@@ -262,8 +269,8 @@ def _check_no_subset(proof: Certificate, forms: List[Form], data: List[Fraction]
         return False
     X, Y = proof.statement.sets
     bound = _upper(Y, proof.data)
-    reached = None if bound is None else _lower(X, forms[0], proof.data)
-    return reached is not None and bound is not None and reached > bound
+    return bound is not None and any(value > bound
+                                     for value in _reached(X, forms[0], proof.data))
 
 
 def _check_empty(proof: Certificate, forms: List[Form], data: List[Fraction]) -> bool:

@@ -23,7 +23,8 @@ class Error(Exception):
     `problems` lists every problem of an input; of other errors it is empty.
     """
 
-    def __init__(self, message: str, code: str = "invalid", problems: Sequence[Tuple[Any, ...]] = ()) -> None:
+    def __init__(self, message: str, code: str = "invalid",
+                 problems: Sequence[Tuple[Any, ...]] = ()) -> None:
         super().__init__(message)
         self.code = code
         self.problems = [Problem(*problem) for problem in problems]

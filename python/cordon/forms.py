@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Set, Tuple
 
 from . import rational
 
@@ -76,8 +76,8 @@ def onto(form: Form, y: List[Fraction], d: Optional[List[Fraction]]) -> Optional
         return y
     if not form.S:
         return None
-    order = sorted(range(len(y)), key=lambda i: -abs(y[i]))
-    moved = rational.correction(rational.transposed(form.S, form.lines), missing, order)
+    weights = [max(float(abs(v)), 1e-60) for v in y]
+    moved = rational.correction(rational.transposed(form.S, form.lines), missing, weights)
     return None if moved is None else [a + b for a, b in zip(y, moved)]
 
 
@@ -126,21 +126,36 @@ def has_no_solution(form: Form, kind: str, data: List[Fraction]) -> bool:
 
 
 def solution_near(form: Form, data: List[Fraction]) -> Optional[List[Fraction]]:
-    """(δ, ξ) moved onto the constraints, if ‖ξ‖∞ ≤ 1 is kept."""
+    """(δ, ξ) moved onto the constraints, if ‖ξ‖∞ ≤ 1 is kept: by few variables, or by all of them,
+    each by its share of the room that it has. What would leave its bounds stays at them, and the
+    others are moved once more."""
     if len(data) != form.lines + form.generators:
         return None
     rows = [s + a for s, a in zip(form.S, form.A)]
-    missing = [b - v for b, v in zip(form.b, rational.product(rows, data))]
-    found = data
-    if any(missing):
-        def room(j: int) -> Fraction:  # free first, then those that are farthest from a bound
-            return Fraction(2) if j < form.lines else 1 - abs(data[j])
-        order = sorted(range(len(data)), key=lambda j: -room(j))
-        moved = rational.correction(rows, missing, order)
-        if moved is None:
-            return None
-        found = [a + b for a, b in zip(data, moved)]
-    return found if all(abs(v) <= 1 for v in found[form.lines:]) else None
+    held: Set[int] = set()
+    for _ in range(4):
+        start = _within_bounds(form, data)
+        missing = [b - v for b, v in zip(form.b, rational.product(rows, start))]
+        if not any(missing):
+            return start
+        room = [Fraction(10**6)] * form.lines + [1 - abs(v) for v in start[form.lines:]]
+        weights = [0.0 if j in held else max(float(v), 1e-60) for j, v in enumerate(room)]
+        change = rational.correction(rows, missing, weights)
+        for few in (True, False):
+            tried = change if few else rational.spread(rows, missing, room)
+            if tried is None:
+                return None
+            data = [a + b for a, b in zip(start, tried)]
+            beyond = {j for j in range(form.lines, len(data)) if abs(data[j]) > 1}
+            if not beyond:
+                return data
+        held |= beyond
+    return None
+
+
+def _within_bounds(form: Form, factors: List[Fraction]) -> List[Fraction]:
+    one = Fraction(1)
+    return factors[:form.lines] + [min(max(v, -one), one) for v in factors[form.lines:]]
 
 
 def has_solution(form: Form, kind: str, data: List[Fraction]) -> bool:
@@ -158,3 +173,44 @@ def has_solution(form: Form, kind: str, data: List[Fraction]) -> bool:
 def point_of(form: Form, factors: List[Fraction]) -> List[Fraction]:
     both = [m + g for m, g in zip(form.M, form.G)]
     return [c + v for c, v in zip(form.c, rational.product(both, factors))]
+
+
+def reached(form: Form, d: List[Fraction], multipliers: List[Fraction],
+            inside: List[Fraction]) -> Iterator[Fraction]:
+    """dᵀx of points near the farthest along d, which `multipliers` of a proof of kind dual or rows
+    point at: on the way there from factors that give a point of the set, as far as it goes."""
+    y, scaled = multipliers[:len(form.b)], multipliers[len(form.b):]
+    along = [a - b for a, b in zip(d, columns_of(form.H, scaled, form.dim))] if scaled else d
+    goal, one = list(inside), Fraction(1)
+    room = [10**6 * one] * form.lines
+    for j in range(form.generators):
+        terms = ([row[j] * v for row, v in zip(form.G, along)] +
+                 [-row[j] * v for row, v in zip(form.A, y)])
+        pull = sum(terms, Fraction(0))
+        held = abs(pull) > Fraction(1, 10**9) * sum((abs(v) for v in terms), Fraction(0))
+        room.append(Fraction(0) if held else 1 - abs(inside[form.lines + j]))
+        if held:
+            goal[form.lines + j] = one if pull > 0 else -one
+    rows = [s + a for s, a in zip(form.S, form.A)]
+    missing = [b - v for b, v in zip(form.b, rational.product(rows, goal))]
+    weights = [max(float(v), 1e-60) for v in room]
+    for few in (True, False):
+        change = (rational.correction(rows, missing, weights) if few else
+                  rational.spread(rows, missing, room))
+        if change is not None:
+            end = [a + b for a, b in zip(goal, change)]
+            yield rational.dot(d, point_of(form, _towards(form, inside, end)))
+
+
+def _towards(form: Form, start: List[Fraction], end: List[Fraction]) -> List[Fraction]:
+    """Factors on the way from those of a point of the set to others, as far as the set goes."""
+    share = Fraction(1)
+    for at, to in zip(start[form.lines:], end[form.lines:]):
+        if abs(to) > 1:
+            share = min(share, ((1 if to > 0 else -1) - at) / (to - at))
+    rows = zip(rational.product(form.H, point_of(form, start)),
+               rational.product(form.H, point_of(form, end)), form.h)
+    for at, to, h in rows:
+        if to > h:
+            share = min(share, (h - at) / (to - at))
+    return [a + share * (b - a) for a, b in zip(start, end)]

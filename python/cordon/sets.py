@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
 
 class Hull(NamedTuple):
-    """A box around a set: `lower` and `upper`, shape (n,); `proofs` two per coordinate, of the upper
-    bound and of the lower one, None where there is none to check again."""
+    """A box around a set: `lower` and `upper`, shape (n,); `proofs` two per coordinate, of the
+    upper bound and of the lower one, None where there is none to check again."""
 
     lower: Floats
     upper: Floats
@@ -204,7 +204,8 @@ class Set:
     def is_disjoint(self, other: "Set") -> Answer:
         """X ∩ other = ∅?"""
         status, proof = self._set.is_disjoint(_set(other, "other"))
-        return self._answer("is_disjoint", status, proof, Statement.of_disjoint(self, other, status))
+        statement = Statement.of_disjoint(self, other, status)
+        return self._answer("is_disjoint", status, proof, statement)
 
     def is_bounded(self) -> Answer:
         """Is X bounded?"""
