@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from .sets import Set
 
 if TYPE_CHECKING:
     from .design import Design
+    from .estimate import Estimate
     from .results import Pipeline, Results
 
 #: Of the report: told apart with any kind of colour vision.
@@ -70,25 +71,47 @@ def sets(given: Sequence[Set], dims: Tuple[int, int] = (0, 1), ax: Any = None,
     return ax
 
 
-def bounds(pipelines: Union["Results", "Pipeline", Sequence["Pipeline"]],
-           states: Optional[Sequence[int]] = None, truth: Any = None, ax: Any = None) -> Any:
-    """Bounds of states over time as bands, a pipeline each, with the true states where they are
-    known. `states` counts from 0; None: all. One pair of axes per state."""
+class _Band(NamedTuple):
+    name: str
+    k: Any
+    lower: Any
+    upper: Any
+
+
+def _bands(given: Any) -> List[_Band]:
+    from .estimate import Estimate
     from .results import Pipeline, Results
-    if isinstance(pipelines, Results):
-        truth = pipelines.truth if truth is None else truth
-        drawn = [found for found in pipelines.values() if "observer" in found.written]
-    else:
-        drawn = [pipelines] if isinstance(pipelines, Pipeline) else list(pipelines)
+    if isinstance(given, Pipeline):
+        given = [given]
+    if isinstance(given, Results):
+        given = [found for found in given.values() if "observer" in found.written]
+    given = list(given)
+    if given and all(isinstance(one, Estimate) for one in given):
+        k = np.array([one.k for one in given])
+        lower, upper = (np.array([getattr(one.hull, side) for one in given])
+                        for side in ("lower", "upper"))
+        return [_Band("estimate", k, lower, upper)]
+    if not given or not all(isinstance(one, Pipeline) for one in given):
+        raise TypeError("bounds are drawn of results, of pipelines, or of a list of estimates")
+    return [_Band(one.name, one.k, one.lower, one.upper) for one in given]
+
+
+def bounds(given: Union["Results", "Pipeline", Sequence["Pipeline"], Sequence["Estimate"]],
+           states: Optional[Sequence[int]] = None, truth: Any = None, ax: Any = None) -> Any:
+    """Bounds of states over time as bands, one for each pipeline of results, or of a list of
+    estimates, with the true states where they are known (`truth`, shape (samples, n)). `states`
+    counts from 0; None: all. One pair of axes per state."""
+    truth = getattr(given, "truth", None) if truth is None else np.asarray(truth)
+    drawn = _bands(given)
     chosen = list(range(drawn[0].lower.shape[1])) if states is None else list(states)
     axes = np.atleast_1d(_axes(ax, len(chosen)))
     for one, i in zip(axes, chosen):
-        for j, found in enumerate(drawn):
+        for j, band in enumerate(drawn):
             colour = PALETTE[j % len(PALETTE)]
-            one.fill_between(found.k, found.lower[:, i], found.upper[:, i], color=colour, alpha=0.2,
+            one.fill_between(band.k, band.lower[:, i], band.upper[:, i], color=colour, alpha=0.2,
                              linewidth=0)
-            one.plot(found.k, found.lower[:, i], color=colour, linewidth=0.8, label=found.name)
-            one.plot(found.k, found.upper[:, i], color=colour, linewidth=0.8)
+            one.plot(band.k, band.lower[:, i], color=colour, linewidth=0.8, label=band.name)
+            one.plot(band.k, band.upper[:, i], color=colour, linewidth=0.8)
         if truth is not None:
             one.plot(np.arange(len(truth)), truth[:, i], color=INK, linewidth=1, linestyle="--",
                      label="truth")

@@ -17,4 +17,4 @@ for name, pipeline in results.items():
 ax = co.plot.sets(results["Line zonotope"].sets[2:6], label="line zonotope")
 co.plot.sets(results["Zonotope"].sets[2:6], ax=ax, facecolor="none", edgecolor=co.plot.PALETTE[1])
 ax.set_title("Estimates at k = 2 … 5: exact intersections, and zonotopes around them")
-ax.figure.savefig("compare_representations.png", dpi=150)
+ax.figure.savefig("compare_representations.png", dpi=100)

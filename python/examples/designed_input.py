@@ -14,4 +14,4 @@ print("u =", design.u.ravel())
 
 ax = co.plot.tubes(design)
 ax.set_title("What each mode can show under the designed input")
-ax.figure.savefig("designed_input.png", dpi=150)
+ax.figure.savefig("designed_input.png", dpi=100)

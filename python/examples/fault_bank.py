@@ -26,4 +26,4 @@ for diagnosis in diagnoser.run(u, y, nan_is_missing=True):
 ax = co.plot.modes(results[pipeline])
 ax.set_title("Modes that the data leave; dark: the only one")
 ax.figure.tight_layout()
-ax.figure.savefig("fault_bank.png", dpi=150)
+ax.figure.savefig("fault_bank.png", dpi=100)
