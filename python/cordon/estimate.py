@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from . import _cordon
 from .answers import Answer
@@ -39,7 +39,8 @@ class Estimate:
     @property
     def consistent(self) -> Answer:
         """Is the set not empty?"""
-        status, proof = self._answer
+        status: str = self._answer[0]
+        proof: "Optional[Tuple[str, NDArray[np.float64], float]]" = self._answer[1]
         if proof is None:
             return Answer(status, question="consistent")
         statement = Statement("empty" if status == "no" else "not empty", (self.set,))

@@ -139,7 +139,8 @@ class Metric(_Component):
         return cls(**_with_sets(parameters))
 
     def _step(self, k: int, made: Any, answer: Any, hull: Any, truth: Any) -> Dict[str, Any]:
-        return self.step(Estimate(k, made, answer), *hull, truth)
+        lower, upper = hull
+        return self.step(Estimate(k, made, answer), lower, upper, truth)
 
 
 class Plant(_Component):
@@ -166,13 +167,15 @@ class Plant(_Component):
         return cls(**_with_sets(parameters))
 
 
-Made = TypeVar("Made", bound=Type[_Component])
+Made = TypeVar("Made", bound=Type[Any])
 
 
 def register(component: Made) -> Made:
     """Makes a class known to studies of this process, by its `name`; a decorator. A name is taken
     for as long as the process lives."""
-    if not (isinstance(component, type) and issubclass(component, (Observer, Metric, Plant))):
+    bases = (Observer, Metric, Plant)
+    is_one: bool = isinstance(component, type) and issubclass(component, bases)
+    if not is_one:
         raise TypeError("register takes a class that derives from Observer, Metric or Plant")
     sentence = (component.__doc__ or "").strip().split("\n")[0].rstrip(".")
     if not component.name or not sentence:

@@ -52,7 +52,7 @@ def outline(X: Set, dims: Tuple[int, int] = (0, 1), count: int = 128) -> "np.nda
     det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     corners = np.stack([h * b[:, 1] - h[following] * a[:, 1],
                         h[following] * a[:, 0] - h * b[:, 0]], axis=1) / det[:, None]
-    return corners
+    return np.asarray(corners)
 
 
 def sets(given: Sequence[Set], dims: Tuple[int, int] = (0, 1), ax: Any = None,
