@@ -23,16 +23,16 @@ from .diagnose import Diagnoser, Diagnosis, FaultBound
 from .errors import Error, InputError, Problem
 from .estimate import Estimate, Gain, Observer
 from .extend import Law, conform
-from .results import Pipeline, Results
+from .results import ComparedNumber, Comparison, Pipeline, Results, compare
 from .sets import (Hull, Set, Support, Volume, constrained_zonotope, empty, interval, line_zonotope,
                    point, polytope, space, strip, zonotope)
 from .study import Study, SweepResults
 from .written import Model
 
 __all__ = [
-    "Answer", "Certificate", "Design", "Diagnoser", "Diagnosis", "Error", "Estimate", "FaultBound",
+    "Answer", "Certificate", "ComparedNumber", "Comparison", "Design", "Diagnoser", "Diagnosis", "Error", "Estimate", "FaultBound",
     "Gain", "Hull", "InputError", "Law", "Model", "Observer", "Pipeline", "Problem", "Results", "Set",
-    "Statement", "Study", "Support", "SweepResults", "Volume", "components", "conform",
+    "Statement", "Study", "Support", "SweepResults", "Volume", "compare", "components", "conform",
     "constrained_zonotope", "design_input", "designs_of", "empty", "extend", "interval", "line_zonotope", "point", "polytope", "space",
     "strip", "zonotope",
 ]

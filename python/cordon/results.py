@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, Optional, Union
+from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 
@@ -167,3 +167,46 @@ class Results(Mapping[str, Pipeline]):
 
     def __repr__(self) -> str:
         return f"<results of {self.title!r}: {', '.join(self._pipelines)}>"
+
+
+class ComparedNumber(NamedTuple):
+    """A number of a pipeline in one of several runs: its mean over repetitions, at how many points
+    it differs from that of the first run, and its ratio to it (NaN: none). `significant`, of
+    measured times: it differs by more than the noise of machines."""
+
+    number: str
+    measured: bool
+    pipeline: str
+    at: List[str]  #: values of the sweep's axes, as JSON
+    run: int
+    mean: float
+    different: int
+    ratio: float
+    significant: bool
+
+
+class Comparison(NamedTuple):
+    """Finished runs or sweeps side by side, as `cordon compare` puts them."""
+
+    runs: List[str]
+    axes: List[str]
+    rows: List[ComparedNumber]
+    warnings: List[str]
+
+    @property
+    def different(self) -> List[ComparedNumber]:
+        """Numbers that are not those of the first run; times are told apart by `significant`."""
+        return [row for row in self.rows if row.different > 0 and not row.measured]
+
+    def frame(self) -> Any:
+        """The rows as a pandas frame."""
+        import pandas
+        return pandas.DataFrame(self.rows, columns=ComparedNumber._fields)
+
+
+def compare(*results: Union["Results", str, "os.PathLike[str]"]) -> Comparison:
+    """Compares two or more finished runs or sweeps, by the names of pipelines and values of axes."""
+    directories = [one.directory if isinstance(one, Results) else Path(one) for one in results]
+    told = _cordon.compare(directories)
+    return Comparison(told["runs"], told["axes"], [ComparedNumber(*row) for row in told["rows"]],
+                      told["warnings"])

@@ -9,6 +9,7 @@
 
 #include "bindings.hpp"
 #include "cordon/cordon.hpp"
+#include "cordon/experiments/compare.hpp"
 #include "cordon/experiments/report.hpp"
 #include "cordon/experiments/sweep.hpp"
 #include "cordon/study/run.hpp"
@@ -150,6 +151,29 @@ py::dict verify(const std::filesystem::path& directory, std::int64_t every, py::
   return made;
 }
 
+/// A row per number, pipeline, combination of values and run.
+py::dict compare(const std::vector<std::filesystem::path>& directories) {
+  const Comparison found = unlocked([&] { return compare_results(directories); });
+  py::list runs, rows;
+  for (const ComparedRun& run : found.runs) runs.append(run.directory);
+  for (const ComparedMeasure& measure : found.measures) {
+    for (const ComparedRow& row : measure.rows) {
+      for (std::size_t i = 0; i < row.runs.size(); ++i) {
+        const ComparedNumber& number = row.runs[i];
+        rows.append(py::make_tuple(measure.column.name, measure.column.measured, row.pipeline,
+                                   row.at, i, number.statistics.mean, number.different,
+                                   number.ratio, number.test && number.test->significant()));
+      }
+    }
+  }
+  py::dict made;
+  made["runs"] = runs;
+  made["axes"] = found.axes;
+  made["rows"] = rows;
+  made["warnings"] = found.warnings;
+  return made;
+}
+
 }  // namespace
 
 void bind_studies(py::module_& module) {
@@ -167,6 +191,7 @@ void bind_studies(py::module_& module) {
   module.def("run", &run);
   module.def("sweep", &sweep);
   module.def("verify", &verify);
+  module.def("compare", &compare);
 }
 
 }  // namespace cordon::python

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import json
+import shutil
+import subprocess
 
 import numpy as np
 import pytest
@@ -116,6 +118,39 @@ def test_sweep(examples, tmp_path):
     told = study.sweep(tmp_path / "out", jobs=2)
     assert (told.points, told.failed, told.violated) == (12, 0, 0)
     assert len(told.frame()) == 12
+
+
+def test_compare(study, tmp_path):
+    first = study.run(tmp_path / "first", sets="none")
+    again = study.run(tmp_path / "again", sets="none")
+    other = study.run(tmp_path / "other", sets="none", settings={"/data/simulate/seed": 5})
+    same = co.compare(first, again)
+    assert same.different == [] and len(same.runs) == 2
+    found = co.compare(first, tmp_path / "other")
+    means = {(row.pipeline, row.run): row.mean for row in found.different
+             if row.number == "radius_mean"}
+    assert ("Zonotope", 1) not in means  # its widths do not depend on the data
+    assert means["Interval", 1] == other["Interval"].summary["radius_mean"]
+    assert found.warnings  # another seed is another study
+    with pytest.raises(co.Error):
+        co.compare(first, tmp_path / "nothing")
+
+
+def test_runs_of_the_command_have_the_same_bytes(study, tmp_path):
+    program = shutil.which("cordon") or next(
+        (str(path) for path in (study.file.parents[2] / "build").glob("*/bin/cordon")), None)
+    if program is None:
+        pytest.skip("there is no program beside the package")
+    study.run(tmp_path / "mine")
+    subprocess.run([program, "run", str(study.file), "--out", str(tmp_path / "its"), "--quiet"],
+                   check=True)
+    for name in ("results.json", "sets.jsonl", "data.csv", "steps.csv", "summary.csv"):
+        mine, its = ((tmp_path / folder / name).read_bytes() for folder in ("mine", "its"))
+        if name == "results.json":  # numbers of studies that are written again may have other texts
+            mine, its = (json.loads(text) for text in (mine, its))
+            for head in ("study_hash", "study"):
+                mine.pop(head), its.pop(head)
+        assert mine == its, name
 
 
 def test_frames(study):
