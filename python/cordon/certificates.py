@@ -193,7 +193,7 @@ def _reached(X: "Set", form: Form, d: Floats) -> Iterator[Bound]:
         if proof is None or proof.statement.what != "not empty" or not proof.check():
             return
         inside = solution_near(form, rational.vector(proof.data))
-    if onto(form, [Fraction(0)] * len(form.b), direction) is None:
+    if not form.h and onto(form, [Fraction(0)] * len(form.b), direction) is None:
         yield math.inf
     elif inside is None:
         spread = sum((abs(v) for v in columns_of(form.G, direction, form.generators)), Fraction(0))

@@ -7,9 +7,9 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, Dict, Iterator, List, Optional, Set, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Tuple
 
-from . import rational
+from . import rational, simplex
 
 
 class Form:
@@ -126,31 +126,29 @@ def has_no_solution(form: Form, kind: str, data: List[Fraction]) -> bool:
 
 
 def solution_near(form: Form, data: List[Fraction]) -> Optional[List[Fraction]]:
-    """(δ, ξ) moved onto the constraints, if ‖ξ‖∞ ≤ 1 is kept: by few variables, or by all of them,
-    each by its share of the room that it has. What would leave its bounds stays at them, and the
-    others are moved once more."""
+    """(δ, ξ) moved onto the constraints, if ‖ξ‖∞ ≤ 1 can be kept: by few variables, by all of
+    them, each by its share of the room that it has, or by the simplex method."""
     if len(data) != form.lines + form.generators:
         return None
+    start = _within_bounds(form, data)
     rows = [s + a for s, a in zip(form.S, form.A)]
-    held: Set[int] = set()
-    for _ in range(4):
-        start = _within_bounds(form, data)
-        missing = [b - v for b, v in zip(form.b, rational.product(rows, start))]
-        if not any(missing):
-            return start
-        room = [Fraction(10**6)] * form.lines + [1 - abs(v) for v in start[form.lines:]]
-        weights = [0.0 if j in held else max(float(v), 1e-60) for j, v in enumerate(room)]
-        change = rational.correction(rows, missing, weights)
-        for few in (True, False):
-            tried = change if few else rational.spread(rows, missing, room)
-            if tried is None:
-                return None
-            data = [a + b for a, b in zip(start, tried)]
-            beyond = {j for j in range(form.lines, len(data)) if abs(data[j]) > 1}
-            if not beyond:
-                return data
-        held |= beyond
-    return None
+    missing = [b - v for b, v in zip(form.b, rational.product(rows, start))]
+    if not any(missing):
+        return start
+    room = [Fraction(10**6)] * form.lines + [1 - abs(v) for v in start[form.lines:]]
+    weights = [max(float(v), 1e-60) for v in room]
+    for few in (True, False):
+        change = (rational.correction(rows, missing, weights) if few else
+                  rational.spread(rows, missing, room))
+        if change is None:
+            return None
+        found = [a + b for a, b in zip(start, change)]
+        if all(abs(v) <= 1 for v in found[form.lines:]):
+            return found
+    free: List[Optional[Fraction]] = [None] * form.lines
+    change = simplex.solution_within(rows, missing, free + [-1 - v for v in start[form.lines:]],
+                                     free + [1 - v for v in start[form.lines:]])
+    return None if change is None else [a + b for a, b in zip(start, change)]
 
 
 def _within_bounds(form: Form, factors: List[Fraction]) -> List[Fraction]:
