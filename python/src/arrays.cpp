@@ -2,6 +2,7 @@
 #include "arrays.hpp"
 
 #include <cmath>
+#include <string_view>
 
 namespace cordon::python {
 
@@ -19,16 +20,21 @@ std::string shape_of(const py::array& a) {
 bool is_integer(const py::array& a) { return a.dtype().kind() == 'i' || a.dtype().kind() == 'u'; }
 
 [[noreturn]] void refuse_large(const char* name) {
-  throw py::value_error(std::string(name) + ": an integer beyond 2^53 need not be a double");
+  throw py::value_error(std::string(name) + ": an integer of 2^53 or beyond need not be a double");
 }
 
 Doubles small_integers(const py::array& a, const char* name) {
   Doubles doubles(a);
   const double* const first = doubles.data();
   for (py::ssize_t i = 0; i < doubles.size(); ++i) {
-    if (!(std::abs(first[i]) <= 0x1p53)) refuse_large(name);
+    if (!(std::abs(first[i]) < 0x1p53)) refuse_large(name);
   }
   return doubles;
+}
+
+bool is_bool(py::handle given) {
+  return py::isinstance<py::bool_>(given) ||
+         std::string_view(Py_TYPE(given.ptr())->tp_name).starts_with("numpy.bool");
 }
 
 /// What numpy makes an array of without a word, though something is lost: masks, and large integers
@@ -48,12 +54,12 @@ void refuse_losses(py::handle given, const char* name, int depth) {
   const bool is_list = py::isinstance<py::list>(given) || py::isinstance<py::tuple>(given);
   if (is_list && depth < 4) {
     for (const py::handle entry : given) refuse_losses(entry, name, depth + 1);
-  } else if (!is_list && PyIndex_Check(given.ptr()) != 0) {
+  } else if (!is_list && !is_bool(given) && PyIndex_Check(given.ptr()) != 0) {
     const auto integer = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
     if (!integer) throw py::error_already_set();
     int overflow = 0;
     const long long value = PyLong_AsLongLongAndOverflow(integer.ptr(), &overflow);
-    if (overflow != 0 || value > (1LL << 53) || value < -(1LL << 53)) refuse_large(name);
+    if (overflow != 0 || value >= 1LL << 53 || value <= -(1LL << 53)) refuse_large(name);
   }
 }
 
@@ -100,10 +106,12 @@ double number_of(py::handle given, const char* name) { return *numbers_of(given,
 
 Index count_of(py::handle given, const char* name) {
   const std::string refusal = std::string(name) + ": an integer that is not negative is needed";
-  if (py::isinstance<py::bool_>(given) || PyIndex_Check(given.ptr()) == 0)
-    throw py::type_error(refusal);
+  if (is_bool(given) || PyIndex_Check(given.ptr()) == 0) throw py::type_error(refusal);
   const auto integer = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
-  if (!integer) throw py::error_already_set();
+  if (!integer) {
+    PyErr_Clear();
+    throw py::type_error(refusal);
+  }
   int overflow = 0;
   const long long value = PyLong_AsLongLongAndOverflow(integer.ptr(), &overflow);
   if (overflow != 0 || value < 0) throw py::value_error(refusal);

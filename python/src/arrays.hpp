@@ -15,7 +15,7 @@ namespace py = pybind11;
 
 /// Of arrays, lists and numpy scalars of any real dtype and memory order. Throws TypeError for
 /// what holds no real numbers (complex, text, bool, objects) or hides some (masked arrays), and
-/// ValueError for integers beyond 2⁵³, which need not be doubles. `name` is the argument's in
+/// ValueError for integers of 2⁵³ or beyond, which need not be doubles. `name` is the argument's in
 /// messages.
 Vector vector_of(py::handle given, const char* name);
 Matrix matrix_of(py::handle given, const char* name);
