@@ -5,18 +5,20 @@
 // With y - D u = C x + Dv v every x is (I - Λ C) x + Λ (y - D u - Dv v): X̂ encloses for every Λ, of
 // which only its size depends. The correction is the recursion of luenberger_recursion.hpp for a
 // state that stays where it is, A = I and neither inputs nor disturbances, so that ranges of
-// sensors, an interval C, missing outputs and rounding are dealt with as there.
+// sensors, an interval C, missing outputs and rounding are dealt with as there. With one gain for
+// all times and exact matrices both are one map (one_step_correction.hpp).
 #include <cmath>
 
 #include "components.hpp"
 #include "cordon/core/linalg.hpp"
-#include "cordon/core/tolerances.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "observer_parameters.hpp"
 #include "observers/at_rest.hpp"
 #include "observers/corrected_recursion.hpp"
 #include "observers/gained_recursion.hpp"
 #include "observers/interval_spread.hpp"
+#include "observers/one_step_correction.hpp"
+#include "observers/present_outputs.hpp"
 
 namespace cordon::estimators {
 
@@ -26,16 +28,6 @@ namespace {
 Matrix held_by_predictions(const Model& model) {
   if (model.W.constraints() + model.V.constraints() > 0) return {};
   return linalg::product(model.linear.Bw, invariant::enclosing_zonotope(model.W).G);
-}
-
-/// Is 0 outside the box by more than rounding, which is a share of these sizes?
-bool excludes_zero(const Box& box, const Vector& sizes) {
-  for (Index i = 0; i < box.dim(); ++i) {
-    const double slack = tolerances::proof_margin *
-                         (sizes[i] + std::max(std::abs(box.lower[i]), std::abs(box.upper[i])));
-    if (box.lower[i] > slack || -box.upper[i] > slack) return true;
-  }
-  return false;
 }
 
 class GainCorrection final : public Observer {
@@ -48,6 +40,7 @@ class GainCorrection final : public Observer {
         step_(model().linear, 1, 1),
         first_(at_rest(model()), gain, context.backend, budget_),
         correction_(at_rest(model()), gain, context.backend, budget_, held_by_predictions(model())),
+        is_one_step_(!correction_.is_time_varying() && OneStepCorrection::takes(model())),
         noise_(linalg::product(model().linear.Dv, invariant::enclosing_zonotope(model().V).G)
                    .cwiseAbs()
                    .rowwise()
@@ -65,11 +58,26 @@ class GainCorrection final : public Observer {
     return X_ = corrected(first_, X0 ? *X0 : backend().import(X0_), first);
   }
   Enclosure do_step(const Sample& before, const Sample& now) override {
+    if (is_one_step_) {
+      const std::optional<Enclosure> next =
+          timed(Phase::predict, [&] { return in_one_step(before.u, now); });
+      if (next) return X_ = reduced(*next);
+    }
     const Enclosure predicted =
         timed(Phase::predict, [&] { return recursion_.predicted(X_, step_, before.u); });
     return X_ = corrected(correction_, predicted, now);
   }
   void do_replace(const Enclosure& X) override { X_ = X; }
+
+  /// Nothing where X has no bounds.
+  std::optional<Enclosure> in_one_step(VectorIn u, const Sample& now) {
+    const auto step = one_steps_.at(now, [&](const std::vector<Index>& present) {
+      return std::make_shared<OneStepCorrection>(with_outputs(model(), present),
+                                                 correction_.gain().gain.L(Eigen::all, present),
+                                                 backend());
+    });
+    return now.is_complete() ? step->next(X_, u, now) : step->next(X_, u, without_missing(now));
+  }
 
   Enclosure corrected(GainedRecursion& recursion, const Enclosure& X, const Sample& sample) {
     const std::optional<Sample> others = without_open_outputs(recursion, X, sample);
@@ -77,7 +85,11 @@ class GainCorrection final : public Observer {
     const bool none = now.y.size() == static_cast<Index>(now.missing.size());
     const Enclosure narrowed =
         none ? X : timed(Phase::correct, [&] { return narrowed_by(recursion, X, now); });
-    return timed(Phase::reduce, [&] { return backend().reduce(narrowed, budget_); });
+    return reduced(narrowed);
+  }
+
+  Enclosure reduced(const Enclosure& X) {
+    return timed(Phase::reduce, [&] { return backend().reduce(X, budget_); });
   }
 
   /// The sample without outputs of which nothing is known where X has no bounds, as those of a
@@ -121,6 +133,8 @@ class GainCorrection final : public Observer {
   CorrectedRecursion recursion_;  ///< of which the prediction is used
   StackStep step_;
   GainedRecursion first_, correction_;
+  bool is_one_step_;  ///< where X has bounds, by `one_steps_`
+  PerOutputs<OneStepCorrection> one_steps_;
   Vector noise_;  ///< half widths of Dv V
 };
 

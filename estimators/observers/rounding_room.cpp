@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observers/rounding_room.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -120,6 +121,15 @@ Box reach_of(const Set& X) {
     if (form.M.cols() > 0 && !form.M.row(i).isZero(0)) widths[i] = infinity;
   }
   return {form.c - widths, form.c + widths};
+}
+
+bool excludes_zero(const Box& box, VectorIn sizes) {
+  for (Index i = 0; i < box.dim(); ++i) {
+    const double slack = tolerances::proof_margin *
+                         (sizes[i] + std::max(std::abs(box.lower[i]), std::abs(box.upper[i])));
+    if (box.lower[i] > slack || -box.upper[i] > slack) return true;
+  }
+  return false;
 }
 
 double row_norm(const Matrix& A) {

@@ -70,6 +70,9 @@ class RoundingRoom {
 /// without its constraints, with infinite sides along lines. At little cost.
 Box reach_of(const Set& X);
 
+/// Is 0 outside the box by more than rounding, which is a share of these sizes?
+bool excludes_zero(const Box& box, VectorIn sizes);
+
 /// The largest sum of magnitudes of a row.
 double row_norm(const Matrix& A);
 
