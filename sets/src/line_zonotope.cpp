@@ -236,6 +236,8 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
     const auto [set, terms, is_whole] = without_lines(X);
     reduced = eliminate_constraints(set, terms, max_constraints, how.constraints);
     reduced.exact = reduced.exact && is_whole && widens_little(set, terms);
+  } else if (X.constraints() == 0) {
+    reduced = {X, true};
   } else {
     reduced = eliminate_constraints(X, max_constraints, how.constraints);
   }

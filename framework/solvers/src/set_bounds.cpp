@@ -64,6 +64,24 @@ Interval support_of_zonotope(const LineForm& X, VectorIn d) {
   return {rounding::down(h.lower - error), rounding::up(h.upper + error)};
 }
 
+/// c ± |G| 1, to the last digit as a program without rows tells it.
+Box hull_of_zonotope(const LineForm& X, std::vector<Certificate>* why) {
+  const Index n = X.dim();
+  Box hull{Vector(n), Vector(n)};
+  Vector row;
+  for (Index i = 0; i < n; ++i) {
+    row = X.G.row(i);
+    const double reach = rounding::norm_1(row).upper;
+    hull.upper[i] = rounding::up(rounding::up(X.c[i] + reach));
+    hull.lower[i] = -rounding::up(rounding::up(reach - X.c[i]));
+    if (!why) continue;
+    (*why)[static_cast<std::size_t>(2 * i)] = {Certificate::Kind::dual, Vector(0), hull.upper[i]};
+    (*why)[static_cast<std::size_t>(2 * i + 1)] = {Certificate::Kind::dual, Vector(0),
+                                                   -hull.lower[i]};
+  }
+  return hull;
+}
+
 }  // namespace
 
 double support(const LineForm& X, VectorIn d, Certificate* why) {
@@ -102,6 +120,7 @@ double lower_support(const LineForm& X, VectorIn d) {
 Box interval_hull(const LineForm& X, std::vector<Certificate>* why) {
   const Index n = X.dim();
   if (why) why->assign(static_cast<std::size_t>(2 * n), {});
+  if (is_zonotope(X)) return hull_of_zonotope(X, why);
   const auto proof = [&](Index i) { return why ? &(*why)[static_cast<std::size_t>(i)] : nullptr; };
   Questioned q(X);
   Box hull = Box::space(n);
