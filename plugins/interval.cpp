@@ -53,6 +53,29 @@ Box plain_box(const LineForm& X, bool& exact) {
   return box;
 }
 
+/// The hull of {c + Gξ}. Boxes come with one generator along a coordinate at most, which needs no
+/// sum.
+Box hull_of(const Vector& c, const Matrix& G) {
+  Vector radius = Vector::Zero(c.size());
+  bool single = true;
+  for (Index j = 0; j < G.cols(); ++j) {
+    Index entries = 0;
+    for (Index i = 0; i < c.size(); ++i) {
+      if (G(i, j) == 0) continue;
+      single = single && radius[i] == 0 && ++entries == 1;
+      radius[i] = std::abs(G(i, j));
+    }
+  }
+  if (!single) return sets::interval_hull(sets::Zonotope{c, G});
+  Box hull{c, c};
+  for (Index i = 0; i < c.size(); ++i) {
+    if (radius[i] == 0) continue;
+    hull.lower[i] = rounding::down(c[i] - radius[i]);
+    hull.upper[i] = rounding::up(c[i] + radius[i]);
+  }
+  return hull;
+}
+
 /// At most one entry per row over all matrices, each 0 or ±1: coordinates are only put elsewhere.
 bool only_places(std::span<const MatrixIn* const> maps, VectorIn f) {
   for (Index i = 0; i < f.size(); ++i) {
@@ -147,8 +170,7 @@ struct Intervals {
       return {std::move(box), exact ? Tightness::exact : Tightness::outer};
     }
     const Tightness tightness = is_plain_box(X) ? Tightness::exact : Tightness::outer;
-    if (X.lines() == 0 && X.constraints() == 0)
-      return {sets::interval_hull(sets::Zonotope{X.c, X.G}), tightness};
+    if (X.lines() == 0 && X.constraints() == 0) return {hull_of(X.c, X.G), tightness};
     return {cordon::interval_hull(X), tightness};
   }
 

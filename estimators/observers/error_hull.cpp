@@ -6,6 +6,7 @@
 //   -Λ F]
 // and the estimate is x ± h with the half widths h of error_widths.hpp, which do not depend on the
 // data.
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -26,23 +27,17 @@ namespace cordon::estimators {
 
 namespace {
 
-/// Rows of numbers that add up to one vector, x⁺ = X x + U u_before + Y y + V u_now + w, and their
-/// sizes before they were multiplied with each other.
+/// x⁺ = rows z + w for what is known, z = (x, u_before, y, u_now), and the sizes of these numbers
+/// before they were multiplied with each other.
 struct PointStep {
-  Matrix X, U, Y, V;
-  Vector w;
-
-  /// Into `sum`, of which none of the others is a part: products entry by entry, since there are
-  /// few of them, and no vector is made for them.
-  template <class State, class Before, class Output, class Now>
-  void add_up(const State& x, const Before& u_before, const Output& y, const Now& u_now,
-              Vector& sum) const {
-    sum = w;
-    sum += X.lazyProduct(x);
-    sum += U.lazyProduct(u_before);
-    sum += Y.lazyProduct(y);
-    if (V.size() > 0) sum += V.lazyProduct(u_now);
+  PointStep() = default;
+  PointStep(const Matrix& X, const Matrix& U, const Matrix& Y, const Matrix& V, Vector constant)
+      : rows(X.rows(), X.cols() + U.cols() + Y.cols() + V.cols()), w(std::move(constant)) {
+    rows << X, U, Y, V;
   }
+
+  Matrix rows;
+  Vector w;
 };
 
 /// One step of the centre and of the errors, for the outputs of a model.
@@ -65,28 +60,18 @@ ErrorStep::ErrorStep(const Model& model, const Matrix& L, GainForm form) {
   const ErrorDisturbances d = error_disturbances(model, Matrix(0, 0), form);
   D = less(d.E, times(L, d.N));
   const Matrix LD = linalg::product(L, m.D), LD_size = size(L) * size(m.D);
-  point.Y = L;
-  sizes.Y = size(L);
   if (form == GainForm::predictor) {
-    point.X = loop.value;
-    point.U = m.B - LD;
-    point.w = w - L * v;
-    sizes.X = size(m.A) + size(L) * size(m.C);
-    sizes.U = size(m.B) + LD_size;
-    sizes.w = w_size + size(L) * v_size;
+    const Matrix none = Matrix::Zero(m.states(), m.inputs());
+    point = {loop.value, m.B - LD, L, none, w - L * v};
+    sizes = {size(m.A) + size(L) * size(m.C), size(m.B) + LD_size, size(L), none,
+             w_size + size(L) * v_size};
     return;
   }
-  const Index n = m.states();
-  const Matrix rest = Matrix::Identity(n, n) - linalg::product(L, m.C),
-               rest_size = Matrix::Identity(n, n) + size(L) * size(m.C);
-  point.X = loop.value;
-  point.U = linalg::product(rest, m.B);
-  point.V = -LD;
-  point.w = rest * w - L * v;
-  sizes.X = rest_size * size(m.A);
-  sizes.U = rest_size * size(m.B);
-  sizes.V = LD_size;
-  sizes.w = rest_size * w_size + size(L) * v_size;
+  const Matrix unit = Matrix::Identity(m.states(), m.states()),
+               rest = unit - linalg::product(L, m.C), rest_size = unit + size(L) * size(m.C);
+  point = {loop.value, linalg::product(rest, m.B), L, -LD, rest * w - L * v};
+  sizes = {rest_size * size(m.A), rest_size * size(m.B), size(L), LD_size,
+           rest_size * w_size + size(L) * v_size};
 }
 
 class ErrorHullObserver final : public Observer {
@@ -202,22 +187,33 @@ class ErrorHullObserver final : public Observer {
   }
 
   /// Moves x to the next time; by how much rounding can have moved it.
-  Vector moved(const ErrorStep& step, VectorIn u_before, const Sample& used) {
-    const Vector present = used.is_complete() ? Vector() : without_missing(used).y;
-    const Vector& y = used.is_complete() ? used.y : present;
-    Vector size;
-    step.sizes.add_up(x_.cwiseAbs(), u_before.cwiseAbs(), y.cwiseAbs(), used.u.cwiseAbs(), size);
-    step.point.add_up(x_, u_before, y, used.u, next_);
-    x_.swap(next_);
-    size *= 2 * share_;
-    return size;
+  const Vector& moved(const ErrorStep& step, VectorIn u_before, const Sample& used) {
+    known_.resize(step.point.rows.cols());
+    if (used.is_complete()) {
+      known_ << x_, u_before, used.y, used.u;
+    } else {
+      known_ << x_, u_before, without_missing(used).y, used.u;
+    }
+    x_ = step.point.w;
+    moved_ = step.sizes.w;
+    for (Index j = 0; j < known_.size(); ++j) {
+      const double z = known_[j], size = std::abs(z);
+      for (Index i = 0; i < x_.size(); ++i) {
+        x_[i] += step.point.rows(i, j) * z;
+        moved_[i] += step.sizes.rows(i, j) * size;
+      }
+    }
+    moved_ *= 2 * share_;
+    return moved_;
   }
 
-  Enclosure estimate() const {
-    Vector half = widths_.half_widths();
-    half += off_.bound();
-    half += 4 * rounding::unit * (half + x_.cwiseAbs());
-    Enclosure box = backend().box({x_ - half, x_ + half});
+  Enclosure estimate() {
+    widths_.take_half_widths(half_);
+    off_.add_bound(half_);
+    half_ += 4 * rounding::unit * (half_ + x_.cwiseAbs());
+    box_.lower = x_ - half_;
+    box_.upper = x_ + half_;
+    Enclosure box = backend().box(box_);
     box.tightness = Tightness::outer;
     return box;
   }
@@ -228,7 +224,9 @@ class ErrorHullObserver final : public Observer {
   ErrorStep complete_;
   PerOutputs<ErrorStep> others_;
   double share_;
-  Vector x_, next_;  ///< next_: memory for the next one
+  Vector x_;
+  Vector known_, moved_, half_;  ///< of the last step; their memory is used again
+  Box box_;
   ErrorWidths widths_;
   ErrorMemory off_;  ///< what the numbers of x are off by
 

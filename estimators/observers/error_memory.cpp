@@ -15,53 +15,58 @@ constexpr double most_operations = 1e9;  ///< for powers one by one
 
 }  // namespace
 
-ErrorMemory::ErrorMemory(const Matrix& F) {
+ErrorMemory::Powers::Powers(const Matrix& F) {
   const Index n = F.rows();
-  Matrix power = Matrix::Identity(n, n);
-  largest_ = sum_ = Matrix::Zero(n, n);
-  block_ = 0;
+  Matrix signed_power = Matrix::Identity(n, n);
+  largest = sum = Matrix::Zero(n, n);
   double norms = 0;
   const double operations =
       static_cast<double>(n) * static_cast<double>(n) * static_cast<double>(n);
   for (Index next = 1; next <= longest_block; next *= 2) {
     if (next > 1 && static_cast<double>(next) * operations > most_operations) {
-      const Matrix size = power.cwiseAbs();  // |Fᵐ⁺ⁱ| ≤ |Fᵐ| |Fⁱ|
-      norms += row_norm(power) * norms;
-      largest_ = largest_.cwiseMax(linalg::product(size, largest_)).eval();
-      sum_ += linalg::product(size, sum_);
-      power = linalg::product(power, power);
-      block_ = next;
+      const Matrix size = signed_power.cwiseAbs();  // |Fᵐ⁺ⁱ| ≤ |Fᵐ| |Fⁱ|
+      norms += row_norm(signed_power) * norms;
+      largest = largest.cwiseMax(linalg::product(size, largest)).eval();
+      sum += linalg::product(size, sum);
+      signed_power = linalg::product(signed_power, signed_power);
+      block = next;
     }
-    for (; block_ < next; ++block_) {
-      largest_ = largest_.cwiseMax(power.cwiseAbs());
-      sum_ += power.cwiseAbs();
-      norms += row_norm(power);
-      power = linalg::product(F, power);
+    for (; block < next; ++block) {
+      largest = largest.cwiseMax(signed_power.cwiseAbs());
+      sum += signed_power.cwiseAbs();
+      norms += row_norm(signed_power);
+      signed_power = linalg::product(F, signed_power);
     }
-    if (row_norm(power) <= 0.5) break;
+    if (row_norm(signed_power) <= 0.5) break;
   }
-  if (row_norm(power) <= 0.5 && std::isfinite(norms)) sum_of_norms_ = 4 * norms;
-  power_ = power.cwiseAbs();
-  start();
+  if (row_norm(signed_power) <= 0.5 && std::isfinite(norms)) sum_of_norms = 4 * norms;
+  power = signed_power.cwiseAbs();
 }
+
+ErrorMemory::ErrorMemory(const Matrix& F) : of_(std::make_shared<const Powers>(F)) { start(); }
 
 void ErrorMemory::start() {
   steps_ = 0;
-  past_ = now_ = Vector::Zero(power_.rows());
+  past_ = now_ = Vector::Zero(of_->power.rows());
 }
 
 void ErrorMemory::step(VectorIn sizes) {
   now_ = now_.cwiseMax(sizes);
-  if (++steps_ < block_) return;
-  past_ = power_ * past_ + sum_ * now_;
+  if (++steps_ < of_->block) return;
+  past_ = of_->power * past_ + of_->sum * now_;
   now_.setZero();
   steps_ = 0;
 }
 
 Vector ErrorMemory::bound() const {
-  Vector bound = largest_.lazyProduct(past_);
-  bound += sum_.lazyProduct(now_);
+  Vector bound = Vector::Zero(past_.size());
+  add_bound(bound);
   return bound;
+}
+
+void ErrorMemory::add_bound(Vector& to) const {
+  to += of_->largest.lazyProduct(past_);
+  to += of_->sum.lazyProduct(now_);
 }
 
 }  // namespace cordon::estimators

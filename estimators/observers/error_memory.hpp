@@ -2,6 +2,8 @@
 // What the errors of all steps so far add up to in a stable recursion.
 #pragma once
 
+#include <memory>
+
 #include "cordon/core/types.hpp"
 
 namespace cordon::estimators {
@@ -12,7 +14,7 @@ namespace cordon::estimators {
 /// where p bounds |e| at the block's beginning. What is long past is forgotten as F decays, however
 /// large |F| is. Where no m up to 4096 is found bounds hold as well, and may grow. O(n) per step,
 /// O(n²) per block and for a bound, O(n³ m) once; beyond 1e9 operations blocks are doubled by
-/// |Fᵐ⁺ⁱ| ≤ |Fᵐ| |Fⁱ|, in O(n³ log m).
+/// |Fᵐ⁺ⁱ| ≤ |Fᵐ| |Fⁱ|, in O(n³ log m). Copies share what does not change.
 class ErrorMemory {
  public:
   explicit ErrorMemory(const Matrix& F);
@@ -20,14 +22,23 @@ class ErrorMemory {
   void start();
   void step(VectorIn sizes);
   Vector bound() const;
+  /// Without memory of its own.
+  void add_bound(Vector& to) const;
   /// At least Σ_j ‖Fʲ‖∞ over all j, with room for the rounding of the powers; ∞: not known.
-  double sum_of_norms() const { return sum_of_norms_; }
+  double sum_of_norms() const { return of_->sum_of_norms; }
 
  private:
-  Matrix power_, largest_, sum_;  ///< |Fᵐ|, max |Fⁱ|, Σ |Fⁱ|
-  Index block_ = 1, steps_ = 0;
+  struct Powers {
+    explicit Powers(const Matrix& F);
+
+    Matrix power, largest, sum;  ///< |Fᵐ|, max |Fⁱ|, Σ |Fⁱ|
+    Index block = 0;
+    double sum_of_norms = infinity;
+  };
+
+  std::shared_ptr<const Powers> of_;
+  Index steps_ = 0;
   Vector past_, now_;  ///< p, max s
-  double sum_of_norms_ = infinity;
 };
 
 }  // namespace cordon::estimators

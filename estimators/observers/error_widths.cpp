@@ -57,12 +57,11 @@ void ErrorWidths::go_back(const State& state) {
 }
 
 /// At least |Z| 1.
-Vector ErrorWidths::sum_of(const Columns& Z) const {
-  if (Z.value.cols() == 0) return Z.past;
-  Vector sum = Z.value.cwiseAbs().rowwise().sum();
-  sum += Z.off.bound();
-  sum += Z.past;
-  return sum;
+void ErrorWidths::add_sum_of(const Columns& Z, Vector& to) const {
+  to += Z.past;
+  if (Z.value.cols() == 0) return;
+  to += Z.value.cwiseAbs().rowwise().sum();
+  Z.off.add_bound(to);
 }
 
 void ErrorWidths::move_on(Columns& Z) const {
@@ -92,7 +91,9 @@ void ErrorWidths::forget(Columns& Z) const {
 
 void ErrorWidths::step() {
   if (noise_.value.cols() > 0) {
-    sum_ += sum_of(noise_);
+    Vector sum = Vector::Zero(sum_.size());
+    add_sum_of(noise_, sum);
+    sum_ += sum;
     move_on(noise_);
     forget(noise_);
     if (noise_.value.cols() == 0) sum_ += noise_.past;
@@ -111,9 +112,17 @@ void ErrorWidths::step_by(const Rounded& M, const Rounded& D) {
   start({box, Matrix::Zero(box.rows(), box.cols())});
 }
 
-Vector ErrorWidths::half_widths() const {
+void ErrorWidths::take_half_widths(Vector& into) const {
   const auto terms = steps_ + static_cast<double>(D_.value.cols() + start_.value.cols()) + 16;
-  return (sum_ + sum_of(start_)) * (1 + 4 * terms * rounding::unit);
+  into = sum_;
+  add_sum_of(start_, into);
+  into *= 1 + 4 * terms * rounding::unit;
+}
+
+Vector ErrorWidths::half_widths() const {
+  Vector half;
+  take_half_widths(half);
+  return half;
 }
 
 }  // namespace cordon::estimators

@@ -24,6 +24,7 @@ class ErrorWidths {
   /// A step by other matrices; what follows starts from the box around the errors.
   void step_by(const Rounded& M, const Rounded& D);
   Vector half_widths() const;
+  void take_half_widths(Vector& into) const;
   /// A memory of M in which nothing has happened yet.
   const ErrorMemory& memory() const { return memory_; }
 
@@ -44,7 +45,7 @@ class ErrorWidths {
 
  private:
   Columns columns(const Rounded& Z) const;
-  Vector sum_of(const Columns& Z) const;
+  void add_sum_of(const Columns& Z, Vector& to) const;
   void move_on(Columns& Z) const;
   void forget(Columns& Z) const;
 

@@ -40,6 +40,16 @@ void require_vector(VectorIn t, Index size, const char* what) {
     throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
 }
 
+/// With the backend's name in the texts of errors, which are made for these only.
+template <class Form>
+void check_import(const Form& X, const BackendInfo& info) {
+  try {
+    check(X, "import");
+  } catch (const Error& error) {
+    throw Error(error.code(), "backend " + info.name + ", " + error.what());
+  }
+}
+
 const Set& require_set(const Enclosure& X, const char* what) {
   if (!X.set) throw Error(Errc::invalid, std::string(what) + ": no set was given");
   return *X.set;
@@ -90,7 +100,7 @@ Enclosure SetBackend::adopt(Made made, Tightness inputs) const {
 }
 
 Enclosure SetBackend::import(const LineForm& X, Tightness claim) const {
-  check(X, "import into " + info_.name);
+  check_import(X, info_);
   return adopt(fitting(do_import(X), X.dim(), info_, "import"), claim);
 }
 
@@ -103,7 +113,7 @@ Enclosure SetBackend::import(const Enclosure& X) const {
 }
 
 Enclosure SetBackend::import(const View& X) const {
-  check(X, "import into " + info_.name);
+  check_import(X, info_);
   return adopt(fitting(do_import_view(X), X.dim(), info_, "import"), X.claim);
 }
 

@@ -318,7 +318,11 @@ Estimate Observer::step(const Sample& now) {
   if (inconsistent_ && !watches && takes_missing_outputs()) explain(now);
   last_ = held;
   last_inherited_ = inherited_;
-  before_ = used ? std::move(*used) : now;
+  if (used) {
+    before_ = std::move(*used);
+  } else {
+    before_ = now;  // in place, without memory of its own
+  }
   if (model_.region)
     left_region_ = detail::why_outside(*model_.region, present_of(last_)->interval_hull(), now);
   return estimate;
