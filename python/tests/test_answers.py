@@ -109,6 +109,14 @@ def test_parameters_go_through_pickle():
         nominal = co.zonotope([0, 0], made.view()["G"])
         assert (A @ Z).sizes == (A @ made).sizes != (A @ nominal).sizes
         assert same((A @ Z).view()["G"], (A @ made).view()["G"])
+    G = np.random.default_rng(4).normal(size=(3, 12))
+    ways = {name: co.zonotope([0, 0, 0], G).as_("zonotope", reduction=name)
+            for name in ("girard", "pca")}
+    reduced = {name: (-made).reduce(6).view()["G"] for name, made in ways.items()}
+    assert not same(reduced["girard"], reduced["pca"])
+    for name, made in ways.items():
+        for again in (pickle.loads(pickle.dumps(made)), pickle.loads(pickle.dumps(-(-made)))):
+            assert same((-again).reduce(6).view()["G"], reduced[name])
 
 
 def test_answers_and_proofs_go_through_pickle():

@@ -253,6 +253,11 @@ def test_a_direction_needs_both_sets():
     assert Certificate("direction", [1, 0], 1, statement).check()
     assert not Certificate("direction", [-1, 0], 1, statement).check()
     assert not Certificate("direction", [0, 1], 1, statement).check()
+    outside = Statement("excludes", (X,), np.array([2.0, 0.5]))
+    assert Certificate("direction", [1, 0], 1, outside).check()
+    assert not Certificate("direction", [0, 1], 1, outside).check()
+    assert not Certificate("direction", [-1, 0], 1, outside).check()
+    assert not Certificate("direction", [1, 0, 0], 1, outside).check()
     touching = Statement("disjoint", (X, Y + np.array([-1.0, 0.0])))
     assert not Certificate("direction", [1, 0], 1, touching).check()  # at x = 1 both
     beyond = Statement("not a subset", (Y, X))
