@@ -4,7 +4,7 @@
     pip install ./python
     python3 python/build_backend/cordon_build.py --package build/python/package
 
-CMake builds in build/python/cmake, or in build/release where that is configured for this Python.
+CMake builds in build/python-cmake, or in build/release where that is configured for this Python.
 CORDON_BUILD_DIR names another folder, CORDON_BUILD_JOBS how many compilers run at once.
 """
 
@@ -85,7 +85,7 @@ def build_directory() -> Path:
               f"CMAKE_HOME_DIRECTORY:INTERNAL={ROOT}")
     if all(f"\n{line}\n" in text for line in wanted):
         return release
-    return ROOT / "build/python/cmake"
+    return ROOT / "build/python-cmake"
 
 
 def built() -> Path:
