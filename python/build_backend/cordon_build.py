@@ -4,7 +4,8 @@
     pip install ./python
     python3 python/build_backend/cordon_build.py --package build/python/package
 
-CMake builds in build/python-cmake, or in build/release where that is configured for this Python.
+CMake builds in build/python-cp311 (the version of Python), or in build/release where that is
+configured for this Python.
 CORDON_BUILD_DIR names another folder, CORDON_BUILD_JOBS how many compilers run at once.
 """
 
@@ -19,7 +20,7 @@ import sys
 import sysconfig
 import tempfile
 from pathlib import Path
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, NoReturn, Optional
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
@@ -55,7 +56,7 @@ def prepare_metadata_for_build_wheel(metadata_directory: str,
     return cordon_wheel.write_metadata(Path(metadata_directory), PYTHON, version())
 
 
-def fail(message: str) -> Any:
+def fail(message: str) -> NoReturn:
     raise SystemExit(f"cordon: {message}")
 
 
@@ -81,11 +82,12 @@ def build_directory() -> Path:
     cache = release / "CMakeCache.txt"
     text = cache.read_text(encoding="utf-8", errors="replace") if cache.is_file() else ""
     wanted = ("CORDON_BUILD_PYTHON:BOOL=ON", "CMAKE_BUILD_TYPE:STRING=Release",
+              "CORDON_SANITIZE:STRING=",
               f"PYTHON_MODULE_EXTENSION:INTERNAL={sysconfig.get_config_var('EXT_SUFFIX')}",
               f"CMAKE_HOME_DIRECTORY:INTERNAL={ROOT}")
     if all(f"\n{line}\n" in text for line in wanted):
         return release
-    return ROOT / "build/python-cmake"
+    return ROOT / f"build/python-{cordon_wheel.tag().split('-')[0]}"
 
 
 def built() -> Path:
@@ -97,9 +99,15 @@ def built() -> Path:
     if not compiler or not shutil.which(compiler[0]):
         fail(f"a compiler for C++ is missing ({' '.join(compiler)}); {ADVICE}")
     build = build_directory()
+    cache = build / "CMakeCache.txt"
+    home = f"CMAKE_HOME_DIRECTORY:INTERNAL={ROOT}\n"
+    if cache.is_file() and home not in cache.read_text(encoding="utf-8", errors="replace"):
+        if os.environ.get("CORDON_BUILD_DIR"):
+            fail(f"{build} is a build of something else than {ROOT}")
+        shutil.rmtree(build)  # of this checkout, which lay elsewhere
     build.mkdir(parents=True, exist_ok=True)
     configure = ["cmake", "-S", str(ROOT), "-B", str(build)]
-    if not (build / "CMakeCache.txt").is_file():
+    if not cache.is_file():
         configure += ["-G", "Ninja"] if shutil.which("ninja") else []
         configure += ["-DCMAKE_BUILD_TYPE=Release", "-DCORDON_BUILD_TESTS=OFF",
                       "-DCORDON_BUILD_BENCH=OFF", "-DCORDON_BUILD_PYTHON=ON"]
