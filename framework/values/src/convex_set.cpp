@@ -26,24 +26,13 @@ void expect_size(VectorIn x, const ConvexSet& X, const char* what) {
                                    " dimensions");
 }
 
-/// Finds the t at which the answer to "x ∈ t X?" changes, between bounds of which the lower is
-/// proven to be too small and the upper to be enough.
-Interval bisected(const ConvexSet& X, VectorIn x, Interval bounds) {
-  constexpr double relative = 1e-12;
-  while (bounds.upper - bounds.lower > relative * bounds.upper) {
-    const double t = 0.5 * (bounds.lower + bounds.upper);
-    if (!(t > bounds.lower && t < bounds.upper)) break;
-    const Answer inside = X.contains(x / t);
-    if (inside == Answer::unknown) break;
-    (inside == Answer::yes ? bounds.upper : bounds.lower) = t;
-  }
-  return bounds;
+void expect_count(Index n, const char* what) {
+  if (n >= 0) return;
+  throw Error(Errc::dimension, std::string(what) + " of " + std::to_string(n) + " dimensions");
 }
 
-void append_count(std::string& text, Index count, std::string name) {
-  if (count == 0) return;
-  if (count == 1 && name.ends_with('s')) name.pop_back();
-  text += (text.empty() ? "" : ", ") + std::to_string(count) + ' ' + name;
+void append_count(std::string& text, Index count, const std::string& name) {
+  if (count != 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + ' ' + name;
 }
 
 }  // namespace
@@ -78,11 +67,16 @@ ConvexSet ConvexSet::strip(VectorIn rho, double d, double sigma) {
 }
 
 ConvexSet ConvexSet::space(Index n, std::string_view representation) {
+  expect_count(n, "space");
   return cordon::representation(representation)->space(n);
 }
 
 ConvexSet ConvexSet::empty(Index n, std::string_view representation) {
-  return cordon::representation(representation)->empty(n);
+  expect_count(n, "an empty set");
+  Enclosure X = cordon::representation(representation)->empty(n);
+  // what encloses nothing by nothing is equal to it
+  if (X->is_empty() == Answer::yes) X.tightness = Tightness::exact;
+  return X;
 }
 
 ConvexSet ConvexSet::of(const View& X, const std::shared_ptr<const SetBackend>& backend) {
@@ -104,6 +98,7 @@ ConvexSet operator*(MatrixIn A, const ConvexSet& X) {
 }
 
 ConvexSet operator*(double s, const ConvexSet& X) {
+  if (!std::isfinite(s)) throw Error(Errc::not_finite, "a set times NaN or infinity");
   return X.affine_map(s * Matrix::Identity(X.dim(), X.dim()), Vector::Zero(X.dim()));
 }
 
@@ -168,7 +163,7 @@ Matrix ConvexSet::vertices() const {
   if (seen.claim != Tightness::exact) {
     throw Error(Errc::unsupported, "vertices: sets of \"" + representation() +
                                        "\" tell no exact form; take vertices of an enclosure, "
-                                       "as(\"polytope\") or as(\"constrained_zonotope\")");
+                                       "as(\"constrained_zonotope\")");
   }
   Polytope P = Polytope::from(seen.form);
   if (seen.rows.rows() > 0)
@@ -178,33 +173,12 @@ Matrix ConvexSet::vertices() const {
   return P.generators().vertices;
 }
 
-Interval ConvexSet::gauge(VectorIn x) const {
-  expect_size(x, *this, "the point");
-  if (contains(Vector::Zero(dim())) != Answer::yes)
-    throw Error(Errc::unsupported, "gauge: that the set holds 0 could not be proven");
-  if (x.isZero(0)) return {0, 0};
-  // t = 2ᵏ, so that x / t is exact.
-  constexpr int most = 200;
-  Interval found{0, infinity};
-  int k = 0;
-  Answer inside = contains(x);
-  const int step = inside == Answer::no ? 1 : -1;
-  for (; std::abs(k) <= most && inside != Answer::unknown; k += step) {
-    const double t = std::ldexp(1.0, k);
-    inside = contains(x / t);
-    if (inside == Answer::yes) found.upper = std::min(found.upper, t);
-    if (inside == Answer::no) found.lower = std::max(found.lower, t);
-    if (found.lower > 0 && found.upper < infinity) return bisected(*this, x, found);
-  }
-  return found;
-}
-
 std::string to_string(const ConvexSet& X) {
   const Complexity size = X.complexity();
   std::string counts;
-  append_count(counts, size.generators, "generators");
-  append_count(counts, size.lines, "lines");
-  append_count(counts, size.constraints, "constraints");
+  append_count(counts, size.generators, size.generators == 1 ? "generator" : "generators");
+  append_count(counts, size.lines, size.lines == 1 ? "line" : "lines");
+  append_count(counts, size.constraints, size.constraints == 1 ? "constraint" : "constraints");
   for (const Complexity::Named& other : size.others) append_count(counts, other.count, other.name);
   return X.representation() + " in R^" + std::to_string(X.dim()) +
          (counts.empty() ? "" : ": " + counts) + " (" + std::string(to_string(X.claim())) + ")";

@@ -31,7 +31,8 @@ class ConvexSet {
   ConvexSet(Enclosure X);  ///< of any backend; Errc::invalid without a set
 
   // Constructors. Each set is exact in its representation unless said otherwise.
-  /// {x : lower ≤ x ≤ upper}, as an interval; infinite bounds in both directions only.
+  /// {x : lower ≤ x ≤ upper}, as an interval; infinite bounds in both directions only. Bounds may
+  /// be rounded outward.
   static ConvexSet box(VectorIn lower, VectorIn upper);
   static ConvexSet point(VectorIn x, std::string_view representation = "zonotope");
   static ConvexSet zonotope(VectorIn c, MatrixIn G);  ///< {c + Gξ : ‖ξ‖∞ ≤ 1}
@@ -94,16 +95,17 @@ class ConvexSet {
   /// exact arithmetic, in no order. Errc::unsupported for unbounded sets, for sets that are no
   /// polytopes (ellipsoids), and beyond the limits of `Polytope`. No columns: X is empty.
   Matrix vertices() const;
-  /// Bounds of inf{t ≥ 0 : x ∈ t X} for a set that holds 0, each proven by an answer about a point,
-  /// as close as answers are given, 1e-12 relative at best; [0, inf] where none is.
-  /// Errc::unsupported unless 0 ∈ X is proven.
+  /// Bounds of inf{t ≥ 0 : x ∈ t X} for a set that holds 0, each proven by an answer about a
+  /// multiple of x, as close as answers are given, 1e-12 relative at best; [0, inf] where none is.
+  /// Multiples are asked for from 2⁻²⁵⁶ to 2²⁵⁶: a gauge of 0, along a line of X, or of inf is
+  /// bounded by what these leave. Errc::unsupported unless 0 ∈ X is proven.
   Interval gauge(VectorIn x) const;
 
  private:
   Enclosure X_;
 };
 
-/// "zonotope in R²: 5 generators (exact)".
+/// "zonotope in R^2: 5 generators (exact)".
 std::string to_string(const ConvexSet& X);
 std::ostream& operator<<(std::ostream& out, const ConvexSet& X);
 
