@@ -62,6 +62,9 @@ TEST_CASE("multiples that are rounded do not leave a flat set") {
   const ConvexSet flat = ConvexSet::zonotope(Vector::Zero(3), Matrix{{1}, {3}, {0.7}});
   expect_gauge(flat, Vector{{1, 3, 0.7}}, 1);
   expect_gauge(flat, Vector{{0.5, 1.5, 0.35}}, 0.5);
+  const double digits = 1 + 0x1p-40;  // too many for products of them with others
+  expect_gauge(ConvexSet::zonotope(Vector::Zero(2), Matrix{{digits}, {3 * digits}}),
+               Vector{{3 * digits, 9 * digits}}, 3);
   const ConvexSet thirds = ConvexSet::zonotope(Vector::Zero(2), Matrix{{0.3}, {0.9}});
   const Vector x = 2 * thirds.enclosure()->line_form().G.col(0);
   expect_gauge(thirds, x, 2);
