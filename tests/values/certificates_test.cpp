@@ -19,7 +19,7 @@ LineForm form_of(const ConvexSet& X) {
 }  // namespace
 
 TEST_CASE("of points") {
-  for (const ConvexSet& X : {hexagon(), triangle(), hexagon().as("line_zonotope")}) {
+  for (const ConvexSet& X : {hexagon(), triangle(), hexagon().as("line_zonotope"), unit_box(2)}) {
     CAPTURE(to_string(X));
     const Vector inside{{-0.5, 0.25}}, outside{{-5, 4}};
     Certificate why;
@@ -40,6 +40,8 @@ TEST_CASE("of emptiness") {
   REQUIRE(triangle().is_empty(&why) == Answer::no);
   CHECK(proves_not_empty(form_of(triangle()), why));
   CHECK_FALSE(proves_empty(form_of(triangle()), why));
+  REQUIRE(ConvexSet::empty(2, "zonotope").is_empty(&why) == Answer::yes);
+  CHECK(why.kind != Certificate::Kind::none);
 }
 
 TEST_CASE("of pairs") {
@@ -57,15 +59,34 @@ TEST_CASE("of pairs") {
   CHECK(beyond.lower > bound.upper);
 }
 
+TEST_CASE("of boxes, which answer by themselves") {
+  const ConvexSet X = unit_box(2), apart = unit_box(2) + Vector{{2.5, 0}};
+  Certificate why;
+  REQUIRE(X.is_disjoint(apart, &why) == Answer::yes);
+  CHECK(proves_disjoint(form_of(X), form_of(apart), why));
+  REQUIRE(X.is_disjoint(X + Vector{{1, 1}}, &why) == Answer::no);
+  CHECK(proves_meet(form_of(X), form_of(X + Vector{{1, 1}}), why));
+}
+
+TEST_CASE("without an answer, and without a proof that can be written down, none is left over") {
+  Certificate why;
+  REQUIRE(hexagon().contains(Vector{{1, 2}}, &why) == Answer::yes);
+  REQUIRE(why.kind != Certificate::Kind::none);
+  const ConvexSet E = unit_box(2).as("ellipsoid") + unit_box(2);
+  REQUIRE(E.contains(Vector{{0, 0}}, &why) == Answer::yes);
+  CHECK(why.kind == Certificate::Kind::none);
+  REQUIRE(hexagon().contains(Vector{{1, 2}}, &why) == Answer::yes);
+  REQUIRE(triangle().is_subset(unit_box(2), &why) == Answer::unknown);
+  CHECK(why.kind == Certificate::Kind::none);
+}
+
 TEST_CASE("of bounds") {
-  for (const ConvexSet& X : {hexagon(), triangle(), segment(), strip()}) {
+  for (const ConvexSet& X : {hexagon(), triangle(), segment(), strip(), unit_box(2)}) {
     CAPTURE(to_string(X));
     const Vector d{{1, 1}};
     Certificate why;
     const double h = X.support(d, nullptr, &why);
     CHECK(h < infinity);
-    // those of zonotopes follow from the form
-    if (why.kind == Certificate::Kind::none) why.kind = Certificate::Kind::structure;
     CHECK(proves_support(form_of(X), d, h, why));
     CHECK_FALSE(proves_support(form_of(X), d, h - 1e-6, why));
     std::vector<Certificate> proofs;

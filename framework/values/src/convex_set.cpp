@@ -6,6 +6,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/solvers/polytope.hpp"
+#include "cordon/solvers/view_questions.hpp"
 
 namespace cordon {
 
@@ -30,6 +31,23 @@ void expect_count(Index n, const char* what) {
   if (n >= 0) return;
   throw Error(Errc::dimension, std::string(what) + " of " + std::to_string(n) + " dimensions");
 }
+
+/// Asks a set, and where it answers without a proof the views. What these exclude, by the answer
+/// `lasting`, holds for all that they enclose.
+template <class Own, class OfViews>
+Answer proven(Certificate* why, bool exact, Answer lasting, const Own& own,
+              const OfViews& of_views) {
+  if (why) *why = {};
+  const Answer answer = own(why);
+  if (!why) return answer;
+  if (answer == Answer::unknown) *why = {};
+  if (answer == Answer::unknown || why->kind != Certificate::Kind::none) return answer;
+  Certificate proof;
+  if ((exact || answer == lasting) && of_views(&proof) == answer) *why = std::move(proof);
+  return answer;
+}
+
+bool is_exact(const View& X) { return X.claim == Tightness::exact; }
 
 void append_count(std::string& text, Index count, const std::string& name) {
   if (count != 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + ' ' + name;
@@ -144,18 +162,46 @@ ConvexSet ConvexSet::reduce(Index generators, Index constraints) const {
   return of_left(*this).reduce(X_, {generators, constraints});
 }
 
-Answer ConvexSet::contains(VectorIn x, Certificate* why) const { return X_.set->contains(x, why); }
+Answer ConvexSet::is_empty(Certificate* why) const {
+  const auto own = [this](Certificate* proof) { return X_.set->is_empty(proof); };
+  if (!why) return own(nullptr);
+  const View X = view();
+  return proven(why, is_exact(X), Answer::yes, own,
+                [&](Certificate* proof) { return cordon::is_empty(X, proof); });
+}
+
+Answer ConvexSet::contains(VectorIn x, Certificate* why) const {
+  const auto own = [&](Certificate* proof) { return X_.set->contains(x, proof); };
+  if (!why) return own(nullptr);
+  const View X = view();
+  return proven(why, is_exact(X), Answer::no, own,
+                [&](Certificate* proof) { return cordon::contains(X, x, proof); });
+}
 
 Answer ConvexSet::is_subset(const ConvexSet& Y, Certificate* why) const {
-  return X_.set->is_subset_of(*Y.X_.set, why);
+  if (why) *why = {};
+  const Answer answer = X_.set->is_subset_of(*Y.X_.set, why);
+  if (why && answer == Answer::unknown) *why = {};
+  return answer;
 }
 
 Answer ConvexSet::is_disjoint(const ConvexSet& Y, Certificate* why) const {
-  return X_.set->is_disjoint_from(*Y.X_.set, why);
+  const auto own = [&](Certificate* proof) { return X_.set->is_disjoint_from(*Y.X_.set, proof); };
+  if (!why) return own(nullptr);
+  const View left = view(), right = Y.view();
+  return proven(why, is_exact(left) && is_exact(right), Answer::yes, own,
+                [&](Certificate* proof) { return cordon::is_disjoint(left, right, proof); });
 }
 
 double ConvexSet::support(VectorIn d, Vector* at, Certificate* why) const {
-  return X_.set->support(d, at, why);
+  if (why) *why = {};
+  const double h = X_.set->support(d, at, why);
+  if (!why || why->kind != Certificate::Kind::none || !(h < infinity)) return h;
+  const View X = view();
+  Certificate proof;
+  cordon::support(X, d, &proof);
+  if (proves_support(X, d, h, proof)) *why = std::move(proof);
+  return h;
 }
 
 Matrix ConvexSet::vertices() const {

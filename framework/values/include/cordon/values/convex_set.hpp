@@ -77,8 +77,9 @@ class ConvexSet {
   /// An enclosure with at most so many generators and constraints.
   ConvexSet reduce(Index generators, Index constraints = Budget::unlimited) const;
 
-  // Questions; `why` receives the proof (solvers/view_questions.hpp tells how it is checked).
-  Answer is_empty(Certificate* why = nullptr) const { return X_.set->is_empty(why); }
+  // Questions; `why` receives the proof, of kind `none` where the representation has none that can
+  // be written down (solvers/view_questions.hpp tells how the others are checked).
+  Answer is_empty(Certificate* why = nullptr) const;
   Answer contains(VectorIn x, Certificate* why = nullptr) const;
   Answer is_subset(const ConvexSet& Y, Certificate* why = nullptr) const;
   Answer is_disjoint(const ConvexSet& Y, Certificate* why = nullptr) const;
