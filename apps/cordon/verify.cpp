@@ -114,7 +114,8 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
     if (p.exact_claims_unproven > 0) {
       passed_over += fmt::format(
           "not proven: {} claims of \"exact\" of {}, held against directions only, which can "
-          "refute them, or not at all where model and data leave no state\n",
+          "refute them, or not at all where model and data leave no state or doubles do not hold "
+          "the set\n",
           p.exact_claims_unproven, p.name);
     }
     if (p.by_supports > 0 && !outcome.of_formulas) {

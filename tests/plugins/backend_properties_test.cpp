@@ -84,6 +84,7 @@ struct Case {
   std::string name;
   bool lines, constraints;  ///< what it is given; every backend must enclose what it accepts
   std::string rounding = "nominal";
+  Index largest_dim = 3;  ///< of operands, whose product it must hold
 
   std::shared_ptr<const SetBackend> backend(const Plugins& plugins) const {
     Params params;
@@ -100,7 +101,9 @@ const std::vector<Case> cases{{"interval", false, true},
                               {"zonotope", false, true, "outward"},
                               {"constrained_zonotope", false, true, "outward"},
                               {"line_zonotope", true, true, "outward"},
-                              {"ellipsoid", false, true, "outward"}};
+                              {"ellipsoid", false, true, "outward"},
+                              {"polytope", true, true, "outward", 2},
+                              {"polytope", true, true, "rational", 2}};
 
 void assert_contains(const Enclosure& X, const Vector& x, double scale, const char* what) {
   RC_LOG() << what << "\n";
@@ -132,7 +135,8 @@ void assert_claim(const Enclosure& X, const LineForm& exact, double scale) {
 
 /// One property: every operation on random sets.
 void check_operations(const Case& c, const SetBackend& backend) {
-  const Index n = *rc::gen::inRange<Index>(1, 4), p = *rc::gen::inRange<Index>(1, 4);
+  const Index n = *rc::gen::inRange<Index>(1, c.largest_dim + 1),
+              p = *rc::gen::inRange<Index>(1, c.largest_dim + 1);
   const Sampled X = random_set(n, c.lines, c.constraints),
                 Y = random_set(p, c.lines, c.constraints);
   const double scale = X.scale + Y.scale;

@@ -62,6 +62,10 @@ void scale_to_one(RationalVector& x);
 /// sought among the first `columns` columns.
 std::vector<Index> reduce_rows(RationalMatrix& A, Index columns);
 
+/// The rows that do not depend on those before them. Of a matrix with many rows, the ones after the
+/// last such row are not looked at if these span everything.
+std::vector<Index> independent_rows(const RationalMatrix& A);
+
 /// A basis of {x : A x = 0}, one vector per row.
 RationalMatrix null_space(RationalMatrix A);
 

@@ -89,13 +89,12 @@ class PointedCone {
  private:
   /// The simplicial cone of the first independent rows: its rays are the columns of their inverse.
   std::vector<std::size_t> start() {
-    RationalMatrix columns(dim_, static_cast<Index>(rows_.size()));
-    for (Index i = 0; i < columns.cols(); ++i) {
-      for (Index k = 0; k < dim_; ++k) columns(k, i) = rows_[as_size(i)][as_size(k)];
+    RationalMatrix rows(static_cast<Index>(rows_.size()), dim_);
+    for (Index i = 0; i < rows.rows(); ++i) {
+      for (Index k = 0; k < dim_; ++k) rows(i, k) = rows_[as_size(i)][as_size(k)];
     }
     std::vector<std::size_t> basis;
-    for (const Index i : rational::reduce_rows(columns, columns.cols()))
-      basis.push_back(as_size(i));
+    for (const Index i : rational::independent_rows(rows)) basis.push_back(as_size(i));
     RationalMatrix system(dim_, 2 * dim_);
     for (Index i = 0; i < dim_; ++i) {
       for (Index k = 0; k < dim_; ++k) system(i, k) = rows_[basis[as_size(i)]][as_size(k)];
@@ -255,16 +254,23 @@ ConeGenerators cone(const std::vector<RationalVector>& inequalities,
   RationalMatrix A(static_cast<Index>(inequalities.size()), k);
   for (Index j = 0; j < k; ++j) {
     const RationalVector solution = solutions.row(j);
-    for (Index i = 0; i < A.rows(); ++i)
-      A(i, j) = rational::dot(inequalities[as_size(i)], solution);
+    for (Index i = 0; i < A.rows(); ++i) {
+      A(i, j) = equations.empty() ? inequalities[as_size(i)][as_size(j)]
+                                  : rational::dot(inequalities[as_size(i)], solution);
+    }
   }
-  RationalMatrix echelon = A;
+  const std::vector<Index> independent = rational::independent_rows(A);
+  RationalMatrix spanning(static_cast<Index>(independent.size()), k);  // the same space as all rows
+  for (Index i = 0; i < spanning.rows(); ++i) {
+    for (Index j = 0; j < k; ++j) spanning(i, j) = A(independent[as_size(i)], j);
+  }
+  RationalMatrix echelon = spanning;
   const std::vector<Index> pivots = rational::reduce_rows(echelon, k);
   std::vector<Index> all(as_size(k));
   for (Index j = 0; j < k; ++j) all[as_size(j)] = j;
 
   ConeGenerators out;
-  const RationalMatrix lines = rational::null_space(A);
+  const RationalMatrix lines = rational::null_space(spanning);
   for (Index i = 0; i < lines.rows(); ++i)
     out.lines.push_back(combine(solutions, all, lines.row(i)));
   if (pivots.empty()) return out;

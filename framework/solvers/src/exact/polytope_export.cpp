@@ -64,6 +64,41 @@ RationalVector scaled_row(const RationalVector& row) {
   return out;
 }
 
+/// To about 15 digits; NaN where doubles have fewer.
+Vector about(const RationalVector& x) {
+  constexpr double smallest = 1e-280;
+  Vector out(static_cast<Index>(x.size()));
+  for (Index i = 0; i < out.size(); ++i) {
+    const Rational& value = x[as_size(i)];
+    out[i] = value.get_d();
+    if (sgn(value) != 0 && std::abs(out[i]) < smallest)
+      out[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+  return out;
+}
+
+/// The largest product with the vertices, exactly: of those only that rounding leaves in question
+/// (all, where a NaN leaves every one in question).
+Rational largest_product(const RationalVector& row, const Description& generators) {
+  constexpr double relative = 1e-12;  // far above what n products of truncated doubles lose
+  const Vector normal = about(row);
+  std::vector<double> upper;
+  double lower = -std::numeric_limits<double>::infinity();
+  for (const RationalVector& vertex : generators.rows) {
+    const Vector terms = normal.cwiseProduct(about(vertex));
+    const double off = relative * terms.lpNorm<1>() + std::numeric_limits<double>::min();
+    upper.push_back(terms.sum() + off);
+    lower = std::max(lower, terms.sum() - off);
+  }
+  std::optional<Rational> largest;
+  for (std::size_t i = 0; i < upper.size(); ++i) {
+    if (upper[i] < lower) continue;
+    Rational product = rational::dot(row, generators.rows[i]);
+    if (!largest || product > *largest) largest = std::move(product);
+  }
+  return *largest;
+}
+
 /// Rows of the constrained zonotope under construction, in the variables ξ of the box.
 class Rows {
  public:
@@ -85,8 +120,7 @@ class Rows {
       if (sgn(error) != 0 || sgn(offset) != 0) exact_ = false;
       return;
     }
-    for (const RationalVector& vertex : generators.rows)
-      slack = std::max(slack, rational::dot(row, vertex));
+    slack = std::max(slack, largest_product(row, generators));
     if (is_equation) {
       const double b = rounded(-offset);
       const Rational width = error + abs(rational::exact(b) + offset);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solvers/rational.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -152,6 +153,30 @@ std::vector<Index> reduce_rows(RationalMatrix& A, Index columns) {
     ++row;
   }
   return pivots;
+}
+
+std::vector<Index> independent_rows(const RationalMatrix& A) {
+  std::vector<Index> chosen;
+  std::vector<std::pair<std::size_t, RationalVector>> echelon;  // with the place of the leading 1
+  for (Index i = 0; i < A.rows() && static_cast<Index>(chosen.size()) < A.cols(); ++i) {
+    RationalVector x = A.row(i);
+    for (const auto& [pivot, row] : echelon) {
+      if (sgn(x[pivot]) == 0) continue;
+      const Rational factor = x[pivot];
+      for (std::size_t k = 0; k < x.size(); ++k) {
+        if (sgn(row[k]) != 0) x[k] -= factor * row[k];
+      }
+    }
+    const auto first =
+        std::find_if(x.begin(), x.end(), [](const Rational& value) { return sgn(value) != 0; });
+    if (first == x.end()) continue;
+    const Rational inverse = 1 / *first;
+    const auto pivot = static_cast<std::size_t>(first - x.begin());
+    for (Rational& value : x) value *= inverse;
+    echelon.emplace_back(pivot, std::move(x));
+    chosen.push_back(i);
+  }
+  return chosen;
 }
 
 RationalMatrix null_space(RationalMatrix A) {

@@ -68,7 +68,8 @@ class StepCheck {
   std::int64_t undecided() const { return undecided_; }
   const std::string& first_undecided() const { return first_undecided_; }
   bool exact_claim_holds() const { return exact_holds_; }
-  /// It was held against directions alone, which cannot prove it.
+  /// Not proven, and not refuted: it was held against directions alone, or the recorded form only
+  /// encloses the set in question and reaches beyond the exact one.
   bool exact_claim_stays() const { return exact_stays_; }
 
  private:
@@ -123,6 +124,7 @@ class StepCheck {
   std::int64_t proofs_ = 0, undecided_ = 0;
   std::string first_undecided_;
   bool exact_holds_ = false, exact_stays_ = false;
+  bool beyond_exchange_ = false;  ///< an outer exchange form reaches beyond the exact set
 };
 
 /// Into vertices and inequalities? False: it cannot be.

@@ -265,6 +265,10 @@ void StepCheck::within(const RationalVector& normal, const Rational& h,
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported) throw;
   }
+  if (!row_.exact_exchange) {
+    beyond_exchange_ = true;
+    return;
+  }
   open(fmt::format("whether the estimate keeps to the exact set along {}", text(d)));
 }
 
@@ -307,7 +311,9 @@ void StepCheck::against(const Polytope& F, const Successors& successors) {
     for (Rational& entry : normal) entry = -entry;
     if (!violation_) within(normal, row[0], successors);
   }
-  exact_holds_ = !violation_ && undecided_ == before;
+  const bool settled = !violation_ && undecided_ == before;
+  exact_holds_ = settled && !beyond_exchange_;
+  exact_stays_ = settled && beyond_exchange_;
 }
 
 void StepCheck::against(const std::vector<Vector>& states) {

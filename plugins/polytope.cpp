@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Half-spaces and vertices over the rationals. Operations are exact; what they give is rounded
+// outward to doubles at once (`outward`), or when its numbers have grown long (`rational`).
+#include "cordon/solvers/polytope.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "adapter.hpp"
+#include "cordon/core/error.hpp"
+#include "cordon/core/tolerances.hpp"
+#include "cordon/registry/plugin.hpp"
+#include "cordon/sets/interval.hpp"
+#include "cordon/solvers/certificate.hpp"
+#include "cordon/solvers/set_questions.hpp"
+#include "cut_box.hpp"
+
+namespace {
+
+using namespace cordon;
+using plugins::Operand;
+
+constexpr Index most_states = 4;  ///< of what an operation makes
+constexpr Index most_disturbances =
+    8;                                ///< of a set that is given: W and V may have more coordinates
+constexpr double most_points = 4000;  ///< of the hull that encloses an interval map
+
+/// A polytope, and its exchange form where it equals that.
+struct Polyhedron {
+  Polytope set;
+  std::optional<LineForm> form;
+};
+
+[[noreturn]] void refuse_dimension(const char* what, Index n, Index limit) {
+  throw Error(Errc::unsupported, "polytope: " + std::string(what) + " of dimension " +
+                                     std::to_string(n) + "; at most " + std::to_string(limit) +
+                                     " dimensions are supported, for vertices and facets grow "
+                                     "exponentially: use constrained_zonotope or line_zonotope");
+}
+
+Vector zeros(Index n) { return Vector::Zero(n); }
+
+/// In the order of bits: bit i decides over the sign of coordinate i.
+Vector signs(unsigned bits, Index n) {
+  Vector s(n);
+  for (Index i = 0; i < n; ++i) s[i] = (bits >> i & 1U) != 0 ? -1 : 1;
+  return s;
+}
+
+struct Polyhedra {
+  using Value = Polyhedron;
+  using Result = plugins::ResultOf<Polyhedron>;
+
+  bool rational = false;
+  std::optional<Index> facets;  ///< that cut the interval hull, kept by `reduce`
+  std::size_t digits = 0;
+
+  // ---- making
+
+  /// What is left after rounding equals its exchange form.
+  static Result held(Polytope::Export out) {
+    const std::optional<Polytope> set = plugins::polytope_of_cut_box(out.form);
+    return {{set ? *set : Polytope::from(out.form), std::move(out.form)}, out.tightness};
+  }
+  Result finish(Polytope P, Tightness claim = Tightness::exact) const {
+    if (rational && P.bits() <= digits) return {{std::move(P), std::nullopt}, claim};
+    Polytope::Export out = P.to_line_form();
+    if (out.tightness == Tightness::exact) return {{std::move(P), std::move(out.form)}, claim};
+    return held(std::move(out));
+  }
+  static void limit_states(Index n) {
+    if (n > most_states) refuse_dimension("a set", n, most_states);
+  }
+
+  Result import(const LineForm& X) const {
+    if (X.dim() > most_disturbances)
+      refuse_dimension("a set that is given", X.dim(), most_disturbances);
+    std::optional<Polytope> plain = plugins::polytope_of_cut_box(X);
+    return finish(plain ? std::move(*plain) : Polytope::from(X));
+  }
+
+  Result predict(const Value& X, MatrixIn A, VectorIn f,
+                 std::span<const Operand<Value>> operands) const {
+    limit_states(A.rows());
+    Polytope sum = X.set.affine_map(A, f);
+    for (const auto& operand : operands)
+      sum = sum.minkowski_sum(operand.value.set.affine_map(operand.T, zeros(A.rows())));
+    return finish(std::move(sum));
+  }
+
+  Result correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise) const {
+    limit_states(X.set.dim());
+    const Matrix minus = -noise.T;
+    const Polytope measured = noise.value.set.affine_map(minus, z);
+    const Polytope kept = X.set.intersection(C, measured);
+    if (X.set.is_empty() || measured.is_empty()) return finish(kept);
+    const Vector terms =
+        z.cwiseAbs() + C.cwiseAbs() * extent(X) + minus.cwiseAbs() * extent(noise.value);
+    const auto with_room = [&](const Vector& room) {
+      return X.set.intersection(C, measured.minkowski_sum(Polytope::from(make_box({-room, room}))));
+    };
+    if (kept.is_empty()) {  // by a hair?
+      const Polytope wider = with_room(tolerances::proof_margin * terms);
+      return wider.is_empty() ? finish(kept) : finish(wider, Tightness::outer);
+    }
+    const Vector room = room_for_data(kept, C, terms);
+    return room.isZero(0) ? finish(kept) : finish(with_room(room), Tightness::outer);
+  }
+  /// Where outputs leave next to nothing along a row, that they were rounded before they came here
+  /// decides over all other directions.
+  static Vector room_for_data(const Polytope& kept, MatrixIn C, const Vector& terms) {
+    constexpr double thin = 1e-5;
+    Vector room = zeros(C.rows());
+    for (Index i = 0; i < C.rows(); ++i) {
+      const Vector row = C.row(i);
+      if (row.isZero(0)) continue;
+      const double width = kept.support(row).upper + kept.support(-row).upper;
+      if (width <= thin * terms[i]) room[i] = tolerances::product_noise * terms[i];
+    }
+    return room;
+  }
+  /// Magnitudes of the coordinates, 0 for those without bounds.
+  static Vector extent(const Value& X) {
+    const Box hull = X.set.interval_hull();
+    const Vector size = hull.lower.cwiseAbs().cwiseMax(hull.upper.cwiseAbs());
+    return size.array().isFinite().select(size, 0.0);
+  }
+
+  /// conv{A x : A ∈ [A], x ∈ X}. Where signs of x are fixed, |x| is linear, and so are the corners
+  /// mid(A) x ± rad(A) |x| of [A] x.
+  Result interval_map(const Value& X, const IntervalMatrix& A) const {
+    const Index m = A.rows(), n = X.set.dim();
+    limit_states(m);
+    if (A.is_exact()) return finish(X.set.affine_map(A.center, zeros(m)));
+    if (X.set.is_empty()) return finish(Polytope::empty(m));
+    const double pieces = std::ldexp(1.0, static_cast<int>(m + n));
+    const auto points = static_cast<double>(X.set.generators().vertices.cols());
+    if (n > most_states || !X.set.is_bounded() || pieces * points > most_points)
+      return spread(X, A);
+    Polytope hull = Polytope::empty(m);
+    for (unsigned orthant = 0; orthant < 1U << n; ++orthant) {
+      const Vector sign = signs(orthant, n);
+      const Polytope part =
+          X.set.intersection(Polytope::from_inequalities(-Matrix(sign.asDiagonal()), zeros(n)));
+      if (part.is_empty()) continue;
+      for (unsigned corner = 0; corner < 1U << m; ++corner) {
+        Matrix stacked(2 * m, n), sum(m, 2 * m);
+        stacked << A.center, signs(corner, m).asDiagonal() * A.radius * sign.asDiagonal();
+        sum << Matrix::Identity(m, m), Matrix::Identity(m, m);
+        hull = hull.convex_hull(part.affine_map(stacked, zeros(2 * m)).affine_map(sum, zeros(m)));
+      }
+    }
+    return finish(std::move(hull), Tightness::outer);
+  }
+  /// mid(A) x + Δ x with |Δ x| ≤ rad(A) |x|, |x| bounded by the interval hull.
+  Result spread(const Value& X, const IntervalMatrix& A) const {
+    const Box box = sets::interval_map(X.set.interval_hull(),
+                                       IntervalMatrix(Matrix::Zero(A.rows(), A.cols()), A.radius));
+    return finish(
+        X.set.affine_map(A.center, zeros(A.rows())).minkowski_sum(Polytope::from(make_box(box))),
+        Tightness::outer);
+  }
+
+  Result intersection(const Value& X, MatrixIn R, const Value& Y) const {
+    limit_states(X.set.dim());
+    return finish(X.set.intersection(R, Y.set));
+  }
+  Result convex_hull(const Value& X, const Value& Y) const {
+    limit_states(X.set.dim());
+    return finish(X.set.convex_hull(Y.set));
+  }
+  /// Budgets count generators and rows, of which this representation has none; `facets` is its own.
+  std::optional<Result> reduce(const Value& X, Budget) const {
+    constexpr Index all = 0;
+    const Index n = X.set.dim(), most = facets.value_or(n < 3 ? all : n == 3 ? 60 : 6);
+    if (most == all || X.set.inequalities().h.size() <= most) return std::nullopt;
+    const LineForm form = line_form(X);
+    if (form.constraints() <= most) return std::nullopt;
+    return held(
+        {plugins::with_largest_facets(form, X.set.generators().vertices, most), Tightness::outer});
+  }
+
+  // ---- questions
+
+  Index dim(const Value& X) const { return X.set.dim(); }
+  /// Errc::unsupported for sets that are unbounded on one side only.
+  LineForm line_form(const Value& X) const { return X.form ? *X.form : X.set.to_line_form().form; }
+  Complexity complexity(const Value& X) const { return {0, X.set.generators().lines.cols(), 0}; }
+  Answer is_empty(const Value& X, Certificate* why) const {
+    const bool empty = X.set.is_empty();
+    if (why)
+      *why = empty ? Certificate{Certificate::Kind::farkas, Vector::Ones(1), 1} : point_in(X);
+    return empty ? Answer::yes : Answer::no;
+  }
+  /// The solver's point of the exchange form, where it proves something: thin sets may leave it no
+  /// room.
+  Certificate point_in(const Value& X) const {
+    const LineForm form = line_form(X);
+    Certificate why;
+    if (cordon::is_empty(form, &why) == Answer::no && proves_not_empty(form, why)) return why;
+    return {};
+  }
+  /// `no` beyond the rounding of data alone.
+  Answer contains(const Value& X, VectorIn x, Certificate*) const {
+    if (X.set.is_empty()) return Answer::no;
+    if (X.set.contains(x)) return Answer::yes;
+    const Polytope::Inequalities faces = X.set.inequalities();
+    for (const Matrix* rows : {&faces.H, &faces.Q}) {
+      for (Index i = 0; i < rows->rows(); ++i) {
+        const Vector normal = rows->row(i);
+        if (is_beyond(X.set, normal, x)) return Answer::no;
+        if (rows == &faces.Q && is_beyond(X.set, -normal, x)) return Answer::no;
+      }
+    }
+    return Answer::unknown;
+  }
+  static bool is_beyond(const Polytope& X, const Vector& normal, VectorIn x) {
+    const double h = X.support(normal).upper;
+    const double terms = normal.cwiseAbs().dot(x.cwiseAbs()) + std::abs(h);
+    return normal.dot(x) - h >
+           tolerances::proof_margin * std::max(terms, tolerances::smallest_terms);
+  }
+  Answer is_bounded(const Value& X) const { return X.set.is_bounded() ? Answer::yes : Answer::no; }
+  double support(const Value& X, VectorIn d, Certificate*) const { return X.set.support(d).upper; }
+  /// Proven by the box of the exchange form.
+  Box interval_hull(const Value& X, std::vector<Certificate>* why) const {
+    const Box hull = X.set.interval_hull();
+    if (why) {
+      const Index rows = X.form ? X.form->constraints() : 0;
+      why->clear();
+      for (Index i = 0; i < X.set.dim(); ++i) {
+        for (const double bound : {hull.upper[i], -hull.lower[i]}) {
+          const bool proven = X.form && std::isfinite(bound);
+          why->push_back(proven ? Certificate{Certificate::Kind::dual, zeros(rows), bound}
+                                : Certificate{});
+        }
+      }
+    }
+    return hull;
+  }
+  std::optional<Volume> volume(const Value& X) const {
+    if (!X.set.is_bounded()) return std::nullopt;
+    try {
+      return Volume{X.set.volume().upper, true};
+    } catch (const Error& error) {
+      if (error.code() != Errc::unsupported) throw;
+      return std::nullopt;
+    }
+  }
+};
+
+ParamSchema schema() {
+  ParamSchema schema;
+  schema.choice("rounding",
+                "numbers stay rational until a set has more than `digits`, or every result is "
+                "rounded outward to doubles: sets equal what is recorded then, and are compared as "
+                "subsets, but facets that meet in one vertex part, and three or four states take "
+                "longer",
+                {"rational", "outward"}, "rational");
+  schema.integer("digits",
+                 "binary digits of all coordinates of a set's vertices, beyond which it is rounded "
+                 "outward with \"rounding\": \"rational\"",
+                 500'000, 0, 100'000'000);
+  schema.integer("facets",
+                 "most facets besides those of the interval hull that a reduction keeps, the "
+                 "largest ones; 0 keeps all; absent: all for one and two states, 60 for three, 6 "
+                 "for four",
+                 std::nullopt, 0, 10'000);
+  return schema;
+}
+
+std::unique_ptr<SetBackend> create(const Params& params) {
+  Polyhedra polyhedra;
+  polyhedra.rational = params.text("rounding") == "rational";
+  polyhedra.digits = static_cast<std::size_t>(params.integer("digits"));
+  if (params.has("facets")) polyhedra.facets = params.integer("facets");
+  BackendInfo info;
+  info.name = "polytope";
+  info.unbounded = true;
+  info.intersections = true;
+  info.rounding = polyhedra.rational ? Rounding::rational : Rounding::outward;
+  info.exact_exchange = !polyhedra.rational;  // the exchange form holds doubles
+  info.summary = "half-spaces and vertices with exact operations, up to four states";
+  info.citation = "Fukuda1996";
+  return std::make_unique<plugins::ValueBackend<Polyhedra>>(info, polyhedra);
+}
+
+void register_components(Registrar& registrar) {
+  registrar.add(
+      BackendEntry{{"polytope", "half-spaces and vertices with exact operations, up to four states",
+                    "Fukuda1996", schema()},
+                   create});
+}
+
+}  // namespace
+
+CORDON_PLUGIN("polytope", "0.1.0", "GPL-3.0-or-later", "the Cordon authors",
+              "polytopes by half-spaces and vertices", register_components)
