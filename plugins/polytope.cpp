@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Half-spaces and vertices over the rationals. Operations are exact; what they give is rounded
-// outward to doubles at once (`outward`), or when its numbers have grown long (`rational`).
+// outward to doubles when its numbers have grown long.
 #include "cordon/solvers/polytope.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <mutex>
 
 #include "adapter.hpp"
 #include "cordon/core/error.hpp"
@@ -13,7 +13,7 @@
 #include "cordon/registry/plugin.hpp"
 #include "cordon/sets/interval.hpp"
 #include "cordon/solvers/certificate.hpp"
-#include "cordon/solvers/set_questions.hpp"
+#include "cordon/solvers/view_questions.hpp"
 #include "cut_box.hpp"
 
 namespace {
@@ -26,11 +26,81 @@ constexpr Index most_disturbances =
     8;                                ///< of a set that is given: W and V may have more coordinates
 constexpr double most_points = 4000;  ///< of the hull that encloses an interval map
 
-/// A polytope, and its exchange form where it equals that.
+/// {x : H x ≤ h} around P, with the normals of its facets in doubles: those along which P is
+/// bounded after that. `exact` if it is P.
+View rows_around(const Polytope& P, LineForm form) {
+  const Polytope::Inequalities faces = P.inequalities();
+  Matrix H(faces.h.size() + 2 * faces.q.size(), P.dim());
+  H << faces.H, faces.Q, -faces.Q;
+  View X{std::move(form), {Matrix(H.rows(), H.cols()), Vector(H.rows())}, Tightness::outer};
+  Index kept = 0;
+  bool exact = true;
+  for (Index i = 0; i < H.rows(); ++i) {
+    const Interval h = P.support(H.row(i).transpose());
+    exact = exact && h.lower == h.upper && std::isfinite(h.upper);
+    if (!std::isfinite(h.upper)) continue;
+    X.rows.H.row(kept) = H.row(i);
+    X.rows.h[kept++] = h.upper;
+  }
+  X.rows.H.conservativeResize(kept, Eigen::NoChange);
+  X.rows.h.conservativeResize(kept);
+  if (exact && P.contains(Polytope::from_inequalities(X.rows.H, X.rows.h)))
+    X.claim = Tightness::exact;
+  return X;
+}
+
+/// Of a set that is unbounded on one side: its box, where a coordinate is bounded or free.
+LineForm box_around(const Polytope& P) {
+  Box hull = P.interval_hull();
+  for (Index i = 0; i < P.dim(); ++i) {
+    if (!std::isfinite(hull.lower[i]) || !std::isfinite(hull.upper[i]))
+      hull.lower[i] = -infinity, hull.upper[i] = infinity;
+  }
+  return make_box(hull);
+}
+
+bool is_one_sided(const Polytope& P) { return P.generators().rays.cols() > 0; }
+
+/// The exchange form, with inequalities where these hold the set and the form alone does not.
+View view_of(const Polytope& P) {
+  if (is_one_sided(P)) return rows_around(P, box_around(P));
+  Polytope::Export out = P.to_line_form();
+  if (out.tightness == Tightness::exact) return {std::move(out.form), {}, Tightness::exact};
+  View with_rows = rows_around(P, out.form);
+  if (with_rows.claim == Tightness::exact) return with_rows;
+  return {std::move(out.form), {}, Tightness::outer};
+}
+
+/// What a view writes down.
+Polytope polytope_of(const View& X) {
+  std::optional<Polytope> plain = plugins::polytope_of_cut_box(X.form);
+  const Polytope form = plain ? std::move(*plain) : Polytope::from(X.form);
+  if (X.rows.rows() == 0) return form;
+  return form.intersection(Polytope::from_inequalities(X.rows.H, X.rows.h));
+}
+
+/// A polytope, and how others see it, found when they ask first.
 struct Polyhedron {
   Polytope set;
-  std::optional<LineForm> form;
+  struct Seen {
+    std::once_flag once;
+    std::optional<View> view;
+  };
+  std::shared_ptr<Seen> seen = std::make_shared<Seen>();
+
+  const View& view() const {
+    std::call_once(seen->once, [this] {
+      if (!seen->view) seen->view = view_of(set);
+    });
+    return *seen->view;
+  }
 };
+
+Polyhedron polyhedron(Polytope P, View seen) {
+  Polyhedron X{std::move(P)};
+  X.seen->view = std::move(seen);
+  return X;
+}
 
 [[noreturn]] void refuse_dimension(const char* what, Index n, Index limit) {
   throw Error(Errc::unsupported, "polytope: " + std::string(what) + " of dimension " +
@@ -52,33 +122,33 @@ struct Polyhedra {
   using Value = Polyhedron;
   using Result = plugins::ResultOf<Polyhedron>;
 
-  bool rational = false;
   std::optional<Index> facets;  ///< that cut the interval hull, kept by `reduce`
   std::size_t digits = 0;
 
   // ---- making
 
-  /// What is left after rounding equals its exchange form.
-  static Result held(Polytope::Export out) {
-    const std::optional<Polytope> set = plugins::polytope_of_cut_box(out.form);
-    return {{set ? *set : Polytope::from(out.form), std::move(out.form)}, out.tightness};
+  /// What is left after rounding equals its view.
+  static Result held(View seen) {
+    seen.claim = Tightness::exact;
+    Polytope P = polytope_of(seen);
+    return {polyhedron(std::move(P), std::move(seen)), Tightness::outer};
   }
   Result finish(Polytope P, Tightness claim = Tightness::exact) const {
-    if (rational && P.bits() <= digits) return {{std::move(P), std::nullopt}, claim};
-    Polytope::Export out = P.to_line_form();
-    if (out.tightness == Tightness::exact) return {{std::move(P), std::move(out.form)}, claim};
-    return held(std::move(out));
+    if (P.bits() <= digits) return {{std::move(P)}, claim};
+    View seen = view_of(P);
+    if (seen.claim == Tightness::outer) return held(std::move(seen));
+    return {polyhedron(std::move(P), std::move(seen)), claim};
   }
   static void limit_states(Index n) {
     if (n > most_states) refuse_dimension("a set", n, most_states);
   }
 
-  Result import(const LineForm& X) const {
+  Result import_view(const View& X) const {
     if (X.dim() > most_disturbances)
       refuse_dimension("a set that is given", X.dim(), most_disturbances);
-    std::optional<Polytope> plain = plugins::polytope_of_cut_box(X);
-    return finish(plain ? std::move(*plain) : Polytope::from(X));
+    return finish(polytope_of(X));
   }
+  Result import(const LineForm& X) const { return import_view({X}); }
 
   Result predict(const Value& X, MatrixIn A, VectorIn f,
                  std::span<const Operand<Value>> operands) const {
@@ -174,31 +244,38 @@ struct Polyhedra {
   std::optional<Result> reduce(const Value& X, Budget) const {
     constexpr Index all = 0;
     const Index n = X.set.dim(), most = facets.value_or(n < 3 ? all : n == 3 ? 60 : 6);
-    if (most == all || X.set.inequalities().h.size() <= most) return std::nullopt;
-    const LineForm form = line_form(X);
+    if (most == all || X.set.inequalities().h.size() <= most || is_one_sided(X.set))
+      return std::nullopt;
+    const LineForm& form = X.view().form;
     if (form.constraints() <= most) return std::nullopt;
-    return held(
-        {plugins::with_largest_facets(form, X.set.generators().vertices, most), Tightness::outer});
+    return held({plugins::with_largest_facets(form, X.set.generators().vertices, most)});
   }
 
   // ---- questions
 
   Index dim(const Value& X) const { return X.set.dim(); }
-  /// Errc::unsupported for sets that are unbounded on one side only.
-  LineForm line_form(const Value& X) const { return X.form ? *X.form : X.set.to_line_form().form; }
-  Complexity complexity(const Value& X) const { return {0, X.set.generators().lines.cols(), 0}; }
+  LineForm line_form(const Value& X) const { return X.view().form; }
+  bool has_exact_form(const Value& X) const { return X.view().is_exact_form(); }
+  View view(const Value& X) const { return X.view(); }
+  /// Both descriptions are found for the next step anyway.
+  Complexity complexity(const Value& X) const {
+    const Polytope::Generators all = X.set.generators();
+    const Index rows = X.set.inequalities().h.size();
+    return {0, all.lines.cols(), 0, {{"facets", rows}, {"vertices", all.vertices.cols()}}};
+  }
   Answer is_empty(const Value& X, Certificate* why) const {
     const bool empty = X.set.is_empty();
     if (why)
       *why = empty ? Certificate{Certificate::Kind::farkas, Vector::Ones(1), 1} : point_in(X);
     return empty ? Answer::yes : Answer::no;
   }
-  /// The solver's point of the exchange form, where it proves something: thin sets may leave it no
-  /// room.
-  Certificate point_in(const Value& X) const {
-    const LineForm form = line_form(X);
+  /// The solver's point of the view, where it proves something: thin sets may leave it no room.
+  static Certificate point_in(const Value& X) {
+    const View& view = X.view();
     Certificate why;
-    if (cordon::is_empty(form, &why) == Answer::no && proves_not_empty(form, why)) return why;
+    if (view.claim == Tightness::exact && cordon::is_empty(view, &why) == Answer::no &&
+        proves_not_empty(view, why))
+      return why;
     return {};
   }
   /// `no` beyond the rounding of data alone.
@@ -221,17 +298,42 @@ struct Polyhedra {
     return normal.dot(x) - h >
            tolerances::proof_margin * std::max(terms, tolerances::smallest_terms);
   }
+  /// Without a certificate: the sets are not those of forms.
+  Answer is_subset(const Value& X, const Value& Y, Certificate*) const {
+    return known([&] { return Y.set.contains(X.set); });
+  }
+  Answer is_disjoint(const Value& X, const Value& Y, Certificate*) const {
+    return known([&] { return X.set.intersection(Y.set).is_empty(); });
+  }
+  /// Beyond the limits of conversions views are compared.
+  static Answer known(const auto& question) {
+    try {
+      return question() ? Answer::yes : Answer::no;
+    } catch (const Error& error) {
+      if (error.code() != Errc::unsupported) throw;
+      return Answer::unknown;
+    }
+  }
   Answer is_bounded(const Value& X) const { return X.set.is_bounded() ? Answer::yes : Answer::no; }
   double support(const Value& X, VectorIn d, Certificate*) const { return X.set.support(d).upper; }
-  /// Proven by the box of the exchange form.
+  /// A vertex.
+  Vector maximizer(const Value& X, VectorIn d) const {
+    const Matrix vertices = X.set.generators().vertices;
+    if (vertices.cols() == 0) return Vector(0);
+    Index best = 0;
+    (Vector(d).transpose() * vertices).maxCoeff(&best);
+    return vertices.col(best);
+  }
+  /// Proven by the box of the exchange form, where that is the set.
   Box interval_hull(const Value& X, std::vector<Certificate>* why) const {
     const Box hull = X.set.interval_hull();
     if (why) {
-      const Index rows = X.form ? X.form->constraints() : 0;
+      const bool exact = has_exact_form(X);
+      const Index rows = X.view().form.constraints();
       why->clear();
       for (Index i = 0; i < X.set.dim(); ++i) {
         for (const double bound : {hull.upper[i], -hull.lower[i]}) {
-          const bool proven = X.form && std::isfinite(bound);
+          const bool proven = exact && std::isfinite(bound);
           why->push_back(proven ? Certificate{Certificate::Kind::dual, zeros(rows), bound}
                                 : Certificate{});
         }
@@ -252,15 +354,9 @@ struct Polyhedra {
 
 ParamSchema schema() {
   ParamSchema schema;
-  schema.choice("rounding",
-                "numbers stay rational until a set has more than `digits`, or every result is "
-                "rounded outward to doubles: sets equal what is recorded then, and are compared as "
-                "subsets, but facets that meet in one vertex part, and three or four states take "
-                "longer",
-                {"rational", "outward"}, "rational");
   schema.integer("digits",
                  "binary digits of all coordinates of a set's vertices, beyond which it is rounded "
-                 "outward with \"rounding\": \"rational\"",
+                 "outward to doubles; 0 rounds every result",
                  500'000, 0, 100'000'000);
   schema.integer("facets",
                  "most facets besides those of the interval hull that a reduction keeps, the "
@@ -272,15 +368,14 @@ ParamSchema schema() {
 
 std::unique_ptr<SetBackend> create(const Params& params) {
   Polyhedra polyhedra;
-  polyhedra.rational = params.text("rounding") == "rational";
   polyhedra.digits = static_cast<std::size_t>(params.integer("digits"));
   if (params.has("facets")) polyhedra.facets = params.integer("facets");
   BackendInfo info;
   info.name = "polytope";
   info.unbounded = true;
   info.intersections = true;
-  info.rounding = polyhedra.rational ? Rounding::rational : Rounding::outward;
-  info.exact_exchange = !polyhedra.rational;  // the exchange form holds doubles
+  info.rounding = polyhedra.digits > 0 ? Rounding::rational : Rounding::outward;
+  info.exact_exchange = false;  // the form holds doubles: sets say it of themselves
   info.summary = "half-spaces and vertices with exact operations, up to four states";
   info.citation = "Fukuda1996";
   return std::make_unique<plugins::ValueBackend<Polyhedra>>(info, polyhedra);

@@ -24,9 +24,13 @@ inline std::vector<std::shared_ptr<const SetBackend>> backends(const std::string
   static const Plugins plugins;
   std::vector<std::shared_ptr<const SetBackend>> all;
   for (const char* name :
-       {"interval", "zonotope", "constrained_zonotope", "line_zonotope", "ellipsoid"}) {
+       {"interval", "zonotope", "constrained_zonotope", "line_zonotope", "ellipsoid", "polytope"}) {
     Params params;
-    params.set("rounding", rounding);
+    if (name != std::string("polytope")) {
+      params.set("rounding", rounding);
+    } else if (rounding == "outward") {
+      params.set("digits", std::int64_t{0});
+    }
     all.push_back(plugins.backend(name, params));
   }
   return all;

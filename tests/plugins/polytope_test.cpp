@@ -16,9 +16,9 @@ using namespace cordon;
 
 namespace {
 
-Params rounding(const std::string& how) {
+Params rounded_as(const std::string& how) {
   Params params;
-  params.set("rounding", how);
+  if (how == "outward") params.set("digits", std::int64_t{0});
   return params;
 }
 
@@ -73,7 +73,7 @@ Vector zero(Index n) { return Vector::Zero(n); }
 TEST_CASE("operations are those of exact polytopes") {
   const Plugins plugins;
   for (const char* how : {"outward", "rational"}) {
-    const auto backend = plugins.backend("polytope", rounding(how));
+    const auto backend = plugins.backend("polytope", rounded_as(how));
     for (unsigned seed = 1; seed <= 12; ++seed) {
       CAPTURE(how);
       CAPTURE(seed);
@@ -113,7 +113,7 @@ TEST_CASE("operations are those of exact polytopes") {
 
 TEST_CASE("images under interval matrices are convex hulls of all images") {
   const Plugins plugins;
-  const auto backend = plugins.backend("polytope", rounding("rational"));
+  const auto backend = plugins.backend("polytope", rounded_as("rational"));
   const Enclosure X = backend->box({Vector{{1}}, Vector{{2}}});
   const Box scalar = backend->interval_map(X, {Matrix{{1}}, Matrix{{.25}}})->interval_hull();
   CHECK(scalar.lower[0] == .75);
@@ -178,7 +178,7 @@ TEST_CASE("limits are errors that name them") {
 
 TEST_CASE("numbers that have grown too long are rounded outward, and the claim says so") {
   const Plugins plugins;
-  Params params = rounding("rational");
+  Params params = rounded_as("rational");
   params.set("digits", std::int64_t{2000});
   const auto backend = plugins.backend("polytope", params);
   const Matrix A{{.9, .3}, {-.2, .8}};
@@ -224,7 +224,7 @@ TEST_CASE("data that contradict each other by rounding leave the state, others d
   const Plugins plugins;
   for (const char* how : {"outward", "rational"}) {
     CAPTURE(how);
-    const auto backend = plugins.backend("polytope", rounding(how));
+    const auto backend = plugins.backend("polytope", rounded_as(how));
     const Enclosure X = backend->box(cube(2, 3)), nothing = backend->point(Vector(0));
     const Matrix C{{1, .1}, {1, .1}, {3, .3}};  // fl(.3) is not three times fl(.1)
     const auto corrected = [&](double off) {
@@ -241,7 +241,7 @@ TEST_CASE("data that contradict each other by rounding leave the state, others d
 
 TEST_CASE("answers have proofs about the exchange form where it has them") {
   const Plugins plugins;
-  const auto backend = plugins.backend("polytope", rounding("outward"));
+  const auto backend = plugins.backend("polytope", rounded_as("outward"));
   Draw draw(5);
   for (Index n = 1; n <= 3; ++n) {
     const Enclosure X = backend->import(draw.zonotope(n, false));
@@ -270,7 +270,7 @@ TEST_CASE("sets without bounds stay what they are") {
   const Plugins plugins;
   for (const char* how : {"outward", "rational"}) {
     CAPTURE(how);
-    const auto backend = plugins.backend("polytope", rounding(how));
+    const auto backend = plugins.backend("polytope", rounded_as(how));
     const Enclosure space = backend->space(3);
     CHECK(space.tightness == Tightness::exact);
     const Enclosure strip = backend->correct(
