@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Half-spaces and vertices over the rationals. Operations are exact; what they give is rounded
-// outward to doubles when its numbers have grown long.
+// outward to doubles when its numbers have grown long. Work is counted, and has a limit.
 #include "cordon/solvers/polytope.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "adapter.hpp"
 #include "cordon/core/error.hpp"
@@ -13,100 +12,48 @@
 #include "cordon/registry/plugin.hpp"
 #include "cordon/sets/interval.hpp"
 #include "cordon/solvers/certificate.hpp"
+#include "cordon/solvers/exact_budget.hpp"
 #include "cordon/solvers/view_questions.hpp"
 #include "cut_box.hpp"
+#include "polytope_view.hpp"
 
 namespace {
 
 using namespace cordon;
 using plugins::Operand;
+using plugins::Polyhedron;
 
-constexpr Index most_states = 4;  ///< of what an operation makes
-constexpr Index most_disturbances =
-    8;                                ///< of a set that is given: W and V may have more coordinates
+constexpr Index most_states = 4;      ///< of what an operation makes
+constexpr Index most_given = 8;       ///< of a set that is given: W and V may have more coordinates
+constexpr Index most_size = 2000;     ///< facets of a set, and vertices
 constexpr double most_points = 4000;  ///< of the hull that encloses an interval map
-
-/// {x : H x ≤ h} around P, with the normals of its facets in doubles: those along which P is
-/// bounded after that. `exact` if it is P.
-View rows_around(const Polytope& P, LineForm form) {
-  const Polytope::Inequalities faces = P.inequalities();
-  Matrix H(faces.h.size() + 2 * faces.q.size(), P.dim());
-  H << faces.H, faces.Q, -faces.Q;
-  View X{std::move(form), {Matrix(H.rows(), H.cols()), Vector(H.rows())}, Tightness::outer};
-  Index kept = 0;
-  bool exact = true;
-  for (Index i = 0; i < H.rows(); ++i) {
-    const Interval h = P.support(H.row(i).transpose());
-    exact = exact && h.lower == h.upper && std::isfinite(h.upper);
-    if (!std::isfinite(h.upper)) continue;
-    X.rows.H.row(kept) = H.row(i);
-    X.rows.h[kept++] = h.upper;
-  }
-  X.rows.H.conservativeResize(kept, Eigen::NoChange);
-  X.rows.h.conservativeResize(kept);
-  if (exact && P.contains(Polytope::from_inequalities(X.rows.H, X.rows.h)))
-    X.claim = Tightness::exact;
-  return X;
-}
-
-/// Of a set that is unbounded on one side: its box, where a coordinate is bounded or free.
-LineForm box_around(const Polytope& P) {
-  Box hull = P.interval_hull();
-  for (Index i = 0; i < P.dim(); ++i) {
-    if (!std::isfinite(hull.lower[i]) || !std::isfinite(hull.upper[i]))
-      hull.lower[i] = -infinity, hull.upper[i] = infinity;
-  }
-  return make_box(hull);
-}
-
-bool is_one_sided(const Polytope& P) { return P.generators().rays.cols() > 0; }
-
-/// The exchange form, with inequalities where these hold the set and the form alone does not.
-View view_of(const Polytope& P) {
-  if (is_one_sided(P)) return rows_around(P, box_around(P));
-  Polytope::Export out = P.to_line_form();
-  if (out.tightness == Tightness::exact) return {std::move(out.form), {}, Tightness::exact};
-  View with_rows = rows_around(P, out.form);
-  if (with_rows.claim == Tightness::exact) return with_rows;
-  return {std::move(out.form), {}, Tightness::outer};
-}
-
-/// What a view writes down.
-Polytope polytope_of(const View& X) {
-  std::optional<Polytope> plain = plugins::polytope_of_cut_box(X.form);
-  const Polytope form = plain ? std::move(*plain) : Polytope::from(X.form);
-  if (X.rows.rows() == 0) return form;
-  return form.intersection(Polytope::from_inequalities(X.rows.H, X.rows.h));
-}
-
-/// A polytope, and how others see it, found when they ask first.
-struct Polyhedron {
-  Polytope set;
-  struct Seen {
-    std::once_flag once;
-    std::optional<View> view;
-  };
-  std::shared_ptr<Seen> seen = std::make_shared<Seen>();
-
-  const View& view() const {
-    std::call_once(seen->once, [this] {
-      if (!seen->view) seen->view = view_of(set);
-    });
-    return *seen->view;
-  }
-};
-
-Polyhedron polyhedron(Polytope P, View seen) {
-  Polyhedron X{std::move(P)};
-  X.seen->view = std::move(seen);
-  return X;
-}
+constexpr double question_work = 1e8;
 
 [[noreturn]] void refuse_dimension(const char* what, Index n, Index limit) {
   throw Error(Errc::unsupported, "polytope: " + std::string(what) + " of dimension " +
                                      std::to_string(n) + "; at most " + std::to_string(limit) +
                                      " dimensions are supported, for vertices and facets grow "
                                      "exponentially: use constrained_zonotope or line_zonotope");
+}
+
+constexpr const char* way_out =
+    "; let fewer `facets` be kept, raise `max_work`, or use line_zonotope";
+
+void limit_states(Index n) {
+  if (n > most_states) refuse_dimension("a set", n, most_states);
+}
+
+/// With both descriptions, which the next operation needs anyway.
+Polytope settled(Polytope P) {
+  const Polytope::Inequalities faces = P.inequalities();
+  const Index facets = faces.h.size() + faces.q.size(), vertices = P.generators().vertices.cols();
+  if (facets > most_size || vertices > most_size) {
+    throw Error(Errc::unsupported, "polytope: a set with " + std::to_string(facets) +
+                                       " facets and " + std::to_string(vertices) +
+                                       " vertices; at most " + std::to_string(most_size) +
+                                       " of each are supported");
+  }
+  return P;
 }
 
 Vector zeros(Index n) { return Vector::Zero(n); }
@@ -118,49 +65,99 @@ Vector signs(unsigned bits, Index n) {
   return s;
 }
 
+/// conv{A x : A ∈ [A], x ∈ X}. Where signs of x are fixed, |x| is linear, and so are the corners
+/// mid(A) x ± rad(A) |x| of [A] x.
+Polytope hull_of_images(const Polytope& X, const IntervalMatrix& A) {
+  const Index m = A.rows(), n = X.dim();
+  Matrix sum(m, 2 * m);
+  sum << Matrix::Identity(m, m), Matrix::Identity(m, m);
+  std::vector<Polytope> parts;
+  for (unsigned orthant = 0; orthant < 1U << n; ++orthant) {
+    const Vector sign = signs(orthant, n);
+    const Polytope part =
+        X.intersection(Polytope::from_inequalities(-Matrix(sign.asDiagonal()), zeros(n)));
+    if (part.is_empty()) continue;
+    for (unsigned corner = 0; corner < 1U << m; ++corner) {
+      Matrix stacked(2 * m, n);
+      stacked << A.center, signs(corner, m).asDiagonal() * A.radius * sign.asDiagonal();
+      parts.push_back(part.affine_map(stacked, zeros(2 * m)).affine_map(sum, zeros(m)));
+    }
+  }
+  while (parts.size() > 1) {  // in pairs, so that each point takes part in few conversions
+    std::vector<Polytope> hulls;
+    for (std::size_t i = 0; i + 1 < parts.size(); i += 2)
+      hulls.push_back(parts[i].convex_hull(parts[i + 1]));
+    if (parts.size() % 2 == 1) hulls.push_back(parts.back());
+    parts = std::move(hulls);
+  }
+  return parts.front();
+}
+
 struct Polyhedra {
   using Value = Polyhedron;
   using Result = plugins::ResultOf<Polyhedron>;
 
   std::optional<Index> facets;  ///< that cut the interval hull, kept by `reduce`
   std::size_t digits = 0;
+  double work = 0;  ///< of one operation
 
   // ---- making
+
+  /// Carries out an operation within the limit of its work.
+  Result bounded(const auto& operation) const {
+    const ExactBudget budget(work);
+    try {
+      return operation();
+    } catch (const Error& error) {
+      if (error.code() != Errc::unsupported) throw;
+      throw Error(Errc::unsupported, std::string(error.what()) + way_out);
+    }
+  }
 
   /// What is left after rounding equals its view.
   static Result held(View seen) {
     seen.claim = Tightness::exact;
-    Polytope P = polytope_of(seen);
-    return {polyhedron(std::move(P), std::move(seen)), Tightness::outer};
+    Polytope P = settled(plugins::polytope_of(seen));
+    return {Polyhedron(std::move(P), std::move(seen)), Tightness::outer};
   }
   Result finish(Polytope P, Tightness claim = Tightness::exact) const {
-    if (P.bits() <= digits) return {{std::move(P)}, claim};
-    View seen = view_of(P);
+    P = settled(std::move(P));
+    if (P.bits() <= digits) return {Polyhedron(std::move(P)), claim};
+    View seen = plugins::view_of(P);
     if (seen.claim == Tightness::outer) return held(std::move(seen));
-    return {polyhedron(std::move(P), std::move(seen)), claim};
-  }
-  static void limit_states(Index n) {
-    if (n > most_states) refuse_dimension("a set", n, most_states);
+    return {Polyhedron(std::move(P), std::move(seen)), claim};
   }
 
   Result import_view(const View& X) const {
-    if (X.dim() > most_disturbances)
-      refuse_dimension("a set that is given", X.dim(), most_disturbances);
-    return finish(polytope_of(X));
+    if (X.dim() > most_given) refuse_dimension("a set that is given", X.dim(), most_given);
+    return bounded([&] { return finish(plugins::polytope_of(X)); });
   }
   Result import(const LineForm& X) const { return import_view({X}); }
 
   Result predict(const Value& X, MatrixIn A, VectorIn f,
                  std::span<const Operand<Value>> operands) const {
     limit_states(A.rows());
-    Polytope sum = X.set.affine_map(A, f);
-    for (const auto& operand : operands)
-      sum = sum.minkowski_sum(operand.value.set.affine_map(operand.T, zeros(A.rows())));
-    return finish(std::move(sum));
+    return bounded([&] {
+      std::optional<Polytope> added;  // these first: they are small
+      for (const auto& operand : operands) {
+        Polytope term = operand.value.set.affine_map(operand.T, zeros(A.rows()));
+        added = added ? added->minkowski_sum(term) : std::move(term);
+      }
+      const Polytope image = X.set.affine_map(A, f);
+      return finish(added ? image.minkowski_sum(*added) : image);
+    });
+  }
+
+  Result product(const Value& X, const Value& Y) const {
+    limit_states(X.set.dim() + Y.set.dim());
+    return bounded([&] { return finish(X.set.cartesian_product(Y.set)); });
   }
 
   Result correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise) const {
     limit_states(X.set.dim());
+    return bounded([&] { return corrected(X, C, z, noise); });
+  }
+  Result corrected(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise) const {
     const Matrix minus = -noise.T;
     const Polytope measured = noise.value.set.affine_map(minus, z);
     const Polytope kept = X.set.intersection(C, measured);
@@ -197,31 +194,24 @@ struct Polyhedra {
     return size.array().isFinite().select(size, 0.0);
   }
 
-  /// conv{A x : A ∈ [A], x ∈ X}. Where signs of x are fixed, |x| is linear, and so are the corners
-  /// mid(A) x ± rad(A) |x| of [A] x.
   Result interval_map(const Value& X, const IntervalMatrix& A) const {
     const Index m = A.rows(), n = X.set.dim();
     limit_states(m);
-    if (A.is_exact()) return finish(X.set.affine_map(A.center, zeros(m)));
-    if (X.set.is_empty()) return finish(Polytope::empty(m));
-    const double pieces = std::ldexp(1.0, static_cast<int>(m + n));
-    const auto points = static_cast<double>(X.set.generators().vertices.cols());
-    if (n > most_states || !X.set.is_bounded() || pieces * points > most_points)
-      return spread(X, A);
-    Polytope hull = Polytope::empty(m);
-    for (unsigned orthant = 0; orthant < 1U << n; ++orthant) {
-      const Vector sign = signs(orthant, n);
-      const Polytope part =
-          X.set.intersection(Polytope::from_inequalities(-Matrix(sign.asDiagonal()), zeros(n)));
-      if (part.is_empty()) continue;
-      for (unsigned corner = 0; corner < 1U << m; ++corner) {
-        Matrix stacked(2 * m, n), sum(m, 2 * m);
-        stacked << A.center, signs(corner, m).asDiagonal() * A.radius * sign.asDiagonal();
-        sum << Matrix::Identity(m, m), Matrix::Identity(m, m);
-        hull = hull.convex_hull(part.affine_map(stacked, zeros(2 * m)).affine_map(sum, zeros(m)));
+    return bounded([&] {
+      if (A.is_exact()) return finish(X.set.affine_map(A.center, zeros(m)));
+      if (X.set.is_empty()) return finish(Polytope::empty(m));
+      const double pieces = std::ldexp(1.0, static_cast<int>(m + n));
+      const auto points = static_cast<double>(X.set.generators().vertices.cols());
+      if (n > most_states || !X.set.is_bounded() || pieces * points > most_points)
+        return spread(X, A);
+      try {
+        const ExactBudget half(work / 2);
+        return finish(hull_of_images(X.set, A), Tightness::outer);
+      } catch (const Error& error) {
+        if (error.code() != Errc::unsupported) throw;
+        return spread(X, A);
       }
-    }
-    return finish(std::move(hull), Tightness::outer);
+    });
   }
   /// mid(A) x + Δ x with |Δ x| ≤ rad(A) |x|, |x| bounded by the interval hull.
   Result spread(const Value& X, const IntervalMatrix& A) const {
@@ -234,21 +224,23 @@ struct Polyhedra {
 
   Result intersection(const Value& X, MatrixIn R, const Value& Y) const {
     limit_states(X.set.dim());
-    return finish(X.set.intersection(R, Y.set));
+    return bounded([&] { return finish(X.set.intersection(R, Y.set)); });
   }
   Result convex_hull(const Value& X, const Value& Y) const {
     limit_states(X.set.dim());
-    return finish(X.set.convex_hull(Y.set));
+    return bounded([&] { return finish(X.set.convex_hull(Y.set)); });
   }
   /// Budgets count generators and rows, of which this representation has none; `facets` is its own.
   std::optional<Result> reduce(const Value& X, Budget) const {
     constexpr Index all = 0;
     const Index n = X.set.dim(), most = facets.value_or(n < 3 ? all : n == 3 ? 60 : 6);
-    if (most == all || X.set.inequalities().h.size() <= most || is_one_sided(X.set))
+    if (most == all || X.set.inequalities().h.size() <= most || plugins::is_one_sided(X.set))
       return std::nullopt;
     const LineForm& form = X.view().form;
     if (form.constraints() <= most) return std::nullopt;
-    return held({plugins::with_largest_facets(form, X.set.generators().vertices, most)});
+    return bounded([&] {
+      return held({plugins::with_largest_facets(form, X.set.generators().vertices, most)});
+    });
   }
 
   // ---- questions
@@ -284,10 +276,13 @@ struct Polyhedra {
     if (X.set.contains(x)) return Answer::yes;
     const Polytope::Inequalities faces = X.set.inequalities();
     for (const Matrix* rows : {&faces.H, &faces.Q}) {
+      const Vector& bounds = rows == &faces.H ? faces.h : faces.q;
       for (Index i = 0; i < rows->rows(); ++i) {
         const Vector normal = rows->row(i);
-        if (is_beyond(X.set, normal, x)) return Answer::no;
-        if (rows == &faces.Q && is_beyond(X.set, -normal, x)) return Answer::no;
+        const double reached = normal.dot(x);
+        if (reached > bounds[i] && is_beyond(X.set, normal, x)) return Answer::no;
+        if (rows == &faces.Q && reached < bounds[i] && is_beyond(X.set, -normal, x))
+          return Answer::no;
       }
     }
     return Answer::unknown;
@@ -307,6 +302,7 @@ struct Polyhedra {
   }
   /// Beyond the limits of conversions views are compared.
   static Answer known(const auto& question) {
+    const ExactBudget budget(question_work);
     try {
       return question() ? Answer::yes : Answer::no;
     } catch (const Error& error) {
@@ -343,6 +339,7 @@ struct Polyhedra {
   }
   std::optional<Volume> volume(const Value& X) const {
     if (!X.set.is_bounded()) return std::nullopt;
+    const ExactBudget budget(question_work);
     try {
       return Volume{X.set.volume().upper, true};
     } catch (const Error& error) {
@@ -358,6 +355,10 @@ ParamSchema schema() {
                  "binary digits of all coordinates of a set's vertices, beyond which it is rounded "
                  "outward to doubles; 0 rounds every result",
                  500'000, 0, 100'000'000);
+  schema.integer("max_work",
+                 "million operations on machine words, about 300 per second, that one operation "
+                 "may take; what takes more is an error",
+                 300, 1, 1'000'000);
   schema.integer("facets",
                  "most facets besides those of the interval hull that a reduction keeps, the "
                  "largest ones; 0 keeps all; absent: all for one and two states, 60 for three, 6 "
@@ -369,13 +370,14 @@ ParamSchema schema() {
 std::unique_ptr<SetBackend> create(const Params& params) {
   Polyhedra polyhedra;
   polyhedra.digits = static_cast<std::size_t>(params.integer("digits"));
+  polyhedra.work = 1e6 * static_cast<double>(params.integer("max_work"));
   if (params.has("facets")) polyhedra.facets = params.integer("facets");
   BackendInfo info;
   info.name = "polytope";
   info.unbounded = true;
   info.intersections = true;
   info.rounding = polyhedra.digits > 0 ? Rounding::rational : Rounding::outward;
-  info.exact_exchange = false;  // the form holds doubles: sets say it of themselves
+  info.exact_exchange = polyhedra.digits == 0;  // sets say it of themselves as well
   info.summary = "half-spaces and vertices with exact operations, up to four states";
   info.citation = "Fukuda1996";
   return std::make_unique<plugins::ValueBackend<Polyhedra>>(info, polyhedra);

@@ -9,6 +9,7 @@
 
 #include "cordon/solvers/polytope.hpp"
 #include "solvers/cdd_oracle.hpp"
+#include "solvers/polytope_representation.hpp"
 #include "solvers/polytopes.hpp"
 
 using namespace cordon;
@@ -41,6 +42,16 @@ LineForm arbitrary_form(Index n) {
   const Index l = *rc::gen::inRange<Index>(0, 3), g = *rc::gen::inRange<Index>(0, 6),
               m = *rc::gen::inRange<Index>(0, 3);
   return {matrix(n, l), matrix(n, g), matrix(n, 1), matrix(m, l), matrix(m, g), matrix(m, 1)};
+}
+
+bool satisfied(const Description& by, const Description& all) {
+  for (std::size_t i = 0; i < by.rows.size(); ++i) {
+    for (std::size_t k = 0; k < all.rows.size(); ++k) {
+      const int side = sgn(rational::dot(by.rows[i], all.rows[k]));
+      if (side < 0 || (side > 0 && (by.linear[i] || all.linear[k]))) return false;
+    }
+  }
+  return true;
 }
 
 Index arbitrary_dim() { return *rc::gen::inRange<Index>(0, 4); }
@@ -83,7 +94,8 @@ TEST_CASE("every set operation keeps its law") {
 }
 
 TEST_CASE("both descriptions say the same, and cddlib agrees") {
-  CHECK(rc::check("random polyhedra", [] {
+  std::atomic<int> without_conversion = 0;
+  CHECK(rc::check("random polyhedra", [&] {
     const Index n = arbitrary_dim();
     Description rows{n, {}, {}};
     const Index m = *rc::gen::inRange<Index>(0, 9);
@@ -94,15 +106,6 @@ TEST_CASE("both descriptions say the same, and cddlib agrees") {
       if (generators) row[0] = i == 0 || (!linear && *rc::gen::inRange(0, 4) > 0) ? 1 : 0;
       rows.add(std::move(row), linear && (!generators || i > 0));
     }
-    const auto satisfied = [](const Description& by, const Description& all) {
-      for (std::size_t i = 0; i < by.rows.size(); ++i) {
-        for (std::size_t k = 0; k < all.rows.size(); ++k) {
-          const int side = sgn(rational::dot(by.rows[i], all.rows[k]));
-          if (side < 0 || (side > 0 && (by.linear[i] || all.linear[k]))) return false;
-        }
-      }
-      return true;
-    };
     const auto turn = generators ? cordon::inequalities_of : cordon::generators_of;
     const auto back = generators ? cordon::generators_of : cordon::inequalities_of;
     const auto other_turn = generators ? cdd::inequalities_of : cdd::generators_of;
@@ -114,7 +117,36 @@ TEST_CASE("both descriptions say the same, and cddlib agrees") {
     RC_ASSERT(ours.rows.empty() || satisfied(other_back(ours), theirs));
     RC_ASSERT(theirs.rows.empty() || satisfied(back(theirs), ours));
     RC_ASSERT(turn(back(ours)).rows.size() == ours.rows.size());
+    // what is left of the rows that were converted
+    const auto conversion =
+        generators ? cordon::inequalities_and_points(rows) : cordon::generators_and_rows(rows);
+    if (!conversion.needed) return;
+    ++without_conversion;
+    RC_ASSERT(conversion.needed->rows.size() == other_back(theirs).rows.size());
+    RC_ASSERT(satisfied(other_turn(*conversion.needed), *conversion.needed));
+    RC_ASSERT(satisfied(*conversion.needed, theirs));
+    RC_ASSERT(other_turn(*conversion.needed).rows.size() == theirs.rows.size());
   }));
+  CHECK(without_conversion > 20);
+}
+
+TEST_CASE("maps keep vertices, and facets where they have an inverse") {
+  std::atomic<int> kept = 0;
+  CHECK(rc::check("random polyhedra", [&] {
+    const Index n = arbitrary_dim(), rows = *rc::gen::inRange<Index>(0, 2) + n;
+    const Polytope X = arbitrary(n);
+    X.is_empty();  // facets are often known by this
+    const Polytope Y = X.affine_map(matrix(rows, n), matrix(rows, 1));
+    const Description &points = Y.representation().generators(),
+                      &faces = Y.representation().inequalities();
+    RC_ASSERT(satisfied(faces, points));
+    const Description same_faces = cdd::inequalities_of(points);
+    RC_ASSERT(faces.rows.size() == same_faces.rows.size());
+    RC_ASSERT(cdd::generators_of(same_faces).rows.size() == points.rows.size());
+    RC_ASSERT(cdd::generators_of(faces).rows.size() == points.rows.size());
+    if (points.rows.size() > 2) ++kept;
+  }));
+  CHECK(kept > 20);
 }
 
 TEST_CASE("exchange form and back") {

@@ -10,6 +10,7 @@
 #include <doctest/doctest.h>
 
 #include "cordon/core/error.hpp"
+#include "cordon/solvers/exact_budget.hpp"
 #include "cordon/solvers/exact_questions.hpp"
 #include "solvers/polytopes.hpp"
 
@@ -215,6 +216,28 @@ TEST_CASE("what does not fit is refused, and quickly") {
   CHECK(code_of([] { cube(8).minkowski_sum(cube(8)); }) == Errc::unsupported);
   CHECK(code_of([] { cube(1).affine_map(Matrix{{1e308}}, Vector{{1e308}}).generators(); }) ==
         Errc::not_finite);
+}
+
+TEST_CASE("a budget ends what takes more, and counts the same again") {
+  const auto sum = [](double operations) {
+    const ExactBudget budget(operations);
+    const Polytope round = cube(4).minkowski_sum(cross_polytope(4));
+    const double spent = round.is_empty() ? -1 : budget.spent();
+    CHECK(round.contains(Vector::Zero(4)));
+    return spent;
+  };
+  const double needed = sum(1e9);
+  CHECK(needed > 1000);
+  CHECK(needed == sum(1e9));
+  CHECK(code_of([&] { sum(needed / 2); }) == Errc::unsupported);
+  try {
+    const ExactBudget outer(needed / 2);
+    sum(1e9);  // counts for both
+    FAIL("nothing was refused");
+  } catch (const Error& error) {
+    CHECK(std::string(error.what()).find("limit of exact work") != std::string::npos);
+  }
+  CHECK(sum(1e9) == needed);  // those before are gone
 }
 
 TEST_CASE("rounding a line sets its coordinates free") {

@@ -2,6 +2,7 @@
 // From inequalities to generators and back: the double-description method on integers [Fukuda1996].
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "solvers/rational.hpp"
@@ -31,6 +32,15 @@ Description generators_of(const Description& inequalities);
 /// Minimal inequalities of conv(points) ⊕ cone(rays) ⊕ span(lines). ∅ (no rows) gives the one row
 /// -1 ≥ 0.
 Description inequalities_of(const Description& generators);
+
+/// The answer, and what was converted without redundancy, where that follows: not of descriptions
+/// with linear rows, of ∅, nor where rows imply equations or generators lines.
+struct Conversion {
+  Description answer;
+  std::optional<Description> needed = std::nullopt;
+};
+Conversion generators_and_rows(const Description& inequalities);
+Conversion inequalities_and_points(const Description& generators);
 
 inline constexpr Index most_dimensions = 20;
 inline constexpr std::size_t most_rows = 20'000, most_rays = 20'000;

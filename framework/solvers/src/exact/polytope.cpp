@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cordon/core/error.hpp"
+#include "cordon/solvers/exact_budget.hpp"
 #include "solvers/polytope_representation.hpp"
 
 namespace cordon {
@@ -14,19 +15,11 @@ namespace cordon {
 namespace {
 
 using polytope::Form;
+using polytope::require;
+using polytope::require_finite;
 using rational::Rational;
 using rational::RationalMatrix;
 using rational::RationalVector;
-
-void require(bool holds, const std::string& message) {
-  if (!holds) throw Error(Errc::dimension, "polytope: " + message);
-}
-
-void require_finite(MatrixIn A, const char* what) {
-  if (!A.allFinite())
-    throw Error(Errc::not_finite,
-                std::string("polytope: ") + what + " has a NaN or infinite entry");
-}
 
 /// Without repeated rows; inequalities that differ in β only are merged into the tightest.
 Description tidy(const Description& in, Form form) {
@@ -103,13 +96,37 @@ void append_rows(Description& out, MatrixIn H, VectorIn h, bool linear) {
   }
 }
 
-Description joined(const Description& a, const Description& b) {
-  Description out = a;
-  for (std::size_t i = 0; i < b.rows.size(); ++i) out.add(b.rows[i], b.linear[i]);
-  return out;
+}  // namespace
+
+namespace polytope {
+
+void require(bool holds, const std::string& message) {
+  if (!holds) throw Error(Errc::dimension, "polytope: " + message);
 }
 
-}  // namespace
+void require_finite(MatrixIn A, const char* what) {
+  if (!A.allFinite())
+    throw Error(Errc::not_finite,
+                std::string("polytope: ") + what + " has a NaN or infinite entry");
+}
+
+double words(const Description& in) {
+  constexpr std::size_t looked_at = 16;
+  std::size_t most = 1;
+  for (std::size_t i = 0; i < std::min(in.rows.size(), looked_at); ++i) {
+    for (const Rational& x : in.rows[i])
+      most = std::max(most, mpz_size(x.get_num_mpz_t()) + mpz_size(x.get_den_mpz_t()));
+  }
+  return static_cast<double>(most);
+}
+
+double product_work(const Description& a, const Description& b) {
+  constexpr double common_divisors = 8;
+  return static_cast<double>(a.rows.size() * b.rows.size() * as_size(a.dim + 1)) *
+         (words(a) + words(b)) * common_divisors;
+}
+
+}  // namespace polytope
 
 // ---- representation
 // -----------------------------------------------------------------------------------------------------------
@@ -119,17 +136,38 @@ Polytope::Representation::Representation(Form form, Description description)
   (form == Form::inequalities ? given_inequalities_ : given_generators_) = tidy(description, form);
 }
 
+Polytope::Representation::Representation(Description generators,
+                                         std::optional<Description> inequalities)
+    : dim(generators.dim),
+      given_generators_(generators),
+      minimal_inequalities_(std::move(inequalities)),
+      minimal_generators_(std::move(generators)) {}
+
 Polytope Polytope::Representation::make(Form form, Description description) {
   return Polytope(std::make_shared<const Representation>(form, std::move(description)));
+}
+
+Polytope Polytope::Representation::minimal(Description generators,
+                                           std::optional<Description> inequalities) {
+  return Polytope(
+      std::make_shared<const Representation>(std::move(generators), std::move(inequalities)));
+}
+
+void Polytope::Representation::convert_generators() const {
+  Conversion found = inequalities_and_points(*given_generators_);
+  minimal_inequalities_ = std::move(found.answer);
+  if (!minimal_generators_) minimal_generators_ = std::move(found.needed);
 }
 
 const Description& Polytope::Representation::locked_generators() const {
   if (minimal_generators_) return *minimal_generators_;
   if (given_inequalities_) {
-    minimal_generators_ = cordon::generators_of(*given_inequalities_);
+    Conversion found = generators_and_rows(*given_inequalities_);
+    minimal_generators_ = std::move(found.answer);
+    minimal_inequalities_ = std::move(found.needed);
   } else {
-    if (!minimal_inequalities_) minimal_inequalities_ = cordon::inequalities_of(*given_generators_);
-    minimal_generators_ = cordon::generators_of(*minimal_inequalities_);
+    if (!minimal_inequalities_) convert_generators();
+    if (!minimal_generators_) minimal_generators_ = cordon::generators_of(*minimal_inequalities_);
   }
   return *minimal_generators_;
 }
@@ -141,15 +179,23 @@ const Description& Polytope::Representation::generators() const {
 
 const Description& Polytope::Representation::inequalities() const {
   const std::lock_guard lock(lock_);
+  if (!minimal_inequalities_ && given_generators_) convert_generators();
   if (!minimal_inequalities_) {
-    minimal_inequalities_ =
-        cordon::inequalities_of(given_generators_ ? *given_generators_ : locked_generators());
+    const Description& generators = locked_generators();
+    if (!minimal_inequalities_) minimal_inequalities_ = cordon::inequalities_of(generators);
   }
   return *minimal_inequalities_;
 }
 
 const Description& Polytope::Representation::any_inequalities() const {
-  return given_inequalities_ ? *given_inequalities_ : inequalities();
+  if (!given_inequalities_) return inequalities();
+  const std::lock_guard lock(lock_);
+  return minimal_inequalities_ ? *minimal_inequalities_ : *given_inequalities_;
+}
+
+const Description* Polytope::Representation::known_inequalities() const {
+  const std::lock_guard lock(lock_);
+  return minimal_inequalities_ ? &*minimal_inequalities_ : nullptr;
 }
 
 // ---- construction
@@ -228,6 +274,7 @@ bool Polytope::contains(const Polytope& X) const {
                                 std::to_string(X.dim()) + " differ");
   const Description& generators = X.representation_->generators();
   const Description& inequalities = representation_->any_inequalities();
+  ExactBudget::spend(polytope::product_work(generators, inequalities));
   for (std::size_t i = 0; i < generators.rows.size(); ++i) {
     if (!satisfies(generators.rows[i], generators.linear[i], inequalities)) return false;
   }
@@ -244,6 +291,8 @@ Interval Polytope::support(VectorIn d) const {
   RationalVector direction = rational::exact(d);
   direction.insert(direction.begin(), Rational(0));
   const Description& generators = representation_->generators();
+  ExactBudget::spend(static_cast<double>(generators.rows.size() * direction.size()) *
+                     polytope::words(generators));
   std::optional<Rational> largest;
   for (std::size_t i = 0; i < generators.rows.size(); ++i) {
     const RationalVector& row = generators.rows[i];
@@ -277,113 +326,6 @@ Box Polytope::interval_hull() const {
     hull.lower[i] = -support(-Vector::Unit(n, i)).upper;
   }
   return hull;
-}
-
-// ---- operations
-// ---------------------------------------------------------------------------------------------------------------
-
-Polytope Polytope::affine_map(MatrixIn T, VectorIn t) const {
-  require(T.cols() == dim() && T.rows() == t.size(), "the map does not fit the set");
-  require_finite(T, "the matrix"), require_finite(t, "the translation");
-  const RationalMatrix map = rational::exact_matrix(T);
-  const RationalVector shift = rational::exact(t);
-  const Description& generators = representation_->generators();
-  Description out{T.rows(), {}, {}};
-  for (std::size_t k = 0; k < generators.rows.size(); ++k) {
-    const RationalVector& row = generators.rows[k];
-    RationalVector image{row[0]};
-    for (Index i = 0; i < T.rows(); ++i) {
-      Rational value = row[0] * shift[as_size(i)];
-      for (Index j = 0; j < T.cols(); ++j) value += map(i, j) * row[as_size(j + 1)];
-      image.push_back(std::move(value));
-    }
-    out.add(std::move(image), generators.linear[k]);
-  }
-  return Representation::make(Form::generators, std::move(out));
-}
-
-Polytope Polytope::preimage(MatrixIn R, VectorIn t) const {
-  require(R.rows() == dim() && t.size() == dim(), "the map does not fit the set");
-  require_finite(R, "the matrix"), require_finite(t, "the translation");
-  const RationalMatrix map = rational::exact_matrix(R);
-  const RationalVector shift = rational::exact(t);
-  const Description& inequalities = representation_->any_inequalities();
-  Description out{R.cols(), {}, {}};
-  for (std::size_t k = 0; k < inequalities.rows.size(); ++k) {
-    const RationalVector& row = inequalities.rows[k];
-    RationalVector pulled(as_size(R.cols() + 1));
-    pulled[0] = row[0];
-    for (Index i = 0; i < R.rows(); ++i) {
-      pulled[0] += row[as_size(i + 1)] * shift[as_size(i)];
-      for (Index j = 0; j < R.cols(); ++j)
-        pulled[as_size(j + 1)] += row[as_size(i + 1)] * map(i, j);
-    }
-    out.add(std::move(pulled), inequalities.linear[k]);
-  }
-  return Representation::make(Form::inequalities, std::move(out));
-}
-
-Polytope Polytope::minkowski_sum(const Polytope& Y) const {
-  require(Y.dim() == dim(), "the dimensions " + std::to_string(dim()) + " and " +
-                                std::to_string(Y.dim()) + " differ");
-  const Description &a = representation_->generators(), &b = Y.representation_->generators();
-  if (a.rows.empty() || b.rows.empty()) return empty(dim());
-  if (a.rows.size() * b.rows.size() > most_rows) {
-    throw Error(Errc::unsupported, "polytope: a sum of " + std::to_string(a.rows.size()) + " and " +
-                                       std::to_string(b.rows.size()) + " generators; at most " +
-                                       std::to_string(most_rows) + " pairs are supported");
-  }
-  Description out{dim(), {}, {}};
-  for (const RationalVector& x : a.rows) {
-    for (const RationalVector& y : b.rows) {
-      if (sgn(x[0]) == 0 || sgn(y[0]) == 0) continue;
-      RationalVector sum = x;
-      for (std::size_t i = 1; i < sum.size(); ++i) sum[i] += y[i];
-      out.add(std::move(sum), false);
-    }
-  }
-  for (const Description* part : {&a, &b}) {
-    for (std::size_t i = 0; i < part->rows.size(); ++i) {
-      if (sgn(part->rows[i][0]) == 0) out.add(part->rows[i], part->linear[i]);
-    }
-  }
-  return Representation::make(Form::generators, std::move(out));
-}
-
-Polytope Polytope::cartesian_product(const Polytope& Y) const {
-  const Description &a = representation_->any_inequalities(),
-                    &b = Y.representation_->any_inequalities();
-  Description out{dim() + Y.dim(), {}, {}};
-  for (std::size_t i = 0; i < a.rows.size(); ++i) {
-    RationalVector row = a.rows[i];
-    row.resize(as_size(out.dim + 1));
-    out.add(std::move(row), a.linear[i]);
-  }
-  for (std::size_t i = 0; i < b.rows.size(); ++i) {
-    RationalVector row = b.rows[i];
-    row.insert(row.begin() + 1, as_size(dim()), Rational(0));
-    out.add(std::move(row), b.linear[i]);
-  }
-  return Representation::make(Form::inequalities, std::move(out));
-}
-
-Polytope Polytope::intersection(const Polytope& Y) const {
-  require(Y.dim() == dim(), "the dimensions " + std::to_string(dim()) + " and " +
-                                std::to_string(Y.dim()) + " differ");
-  return Representation::make(Form::inequalities, joined(representation_->any_inequalities(),
-                                                         Y.representation_->any_inequalities()));
-}
-
-Polytope Polytope::intersection(MatrixIn R, const Polytope& Y) const {
-  require(R.cols() == dim() && R.rows() == Y.dim(), "the map between the sets does not fit");
-  return intersection(Y.preimage(R, Vector::Zero(Y.dim())));
-}
-
-Polytope Polytope::convex_hull(const Polytope& Y) const {
-  require(Y.dim() == dim(), "the dimensions " + std::to_string(dim()) + " and " +
-                                std::to_string(Y.dim()) + " differ");
-  return Representation::make(
-      Form::generators, joined(representation_->generators(), Y.representation_->generators()));
 }
 
 }  // namespace cordon

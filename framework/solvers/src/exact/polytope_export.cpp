@@ -77,27 +77,38 @@ Vector about(const RationalVector& x) {
   return out;
 }
 
-/// The largest product with the vertices, exactly: of those only that rounding leaves in question
-/// (all, where a NaN leaves every one in question).
-Rational largest_product(const RationalVector& row, const Description& generators) {
-  constexpr double relative = 1e-12;  // far above what n products of truncated doubles lose
-  const Vector normal = about(row);
-  std::vector<double> upper;
-  double lower = -std::numeric_limits<double>::infinity();
-  for (const RationalVector& vertex : generators.rows) {
-    const Vector terms = normal.cwiseProduct(about(vertex));
-    const double off = relative * terms.lpNorm<1>() + std::numeric_limits<double>::min();
-    upper.push_back(terms.sum() + off);
-    lower = std::max(lower, terms.sum() - off);
+/// Points, and what doubles hold of them.
+class Vertices {
+ public:
+  explicit Vertices(const Description& generators) : exact_(generators.rows) {
+    for (const RationalVector& vertex : exact_) about_.push_back(about(vertex));
   }
-  std::optional<Rational> largest;
-  for (std::size_t i = 0; i < upper.size(); ++i) {
-    if (upper[i] < lower) continue;
-    Rational product = rational::dot(row, generators.rows[i]);
-    if (!largest || product > *largest) largest = std::move(product);
+  /// The largest product, exactly: of those only that rounding leaves in question (all, where a
+  /// NaN leaves every one in question).
+  Rational largest_product(const RationalVector& row) const {
+    constexpr double relative = 1e-12;  // far above what n products of truncated doubles lose
+    const Vector normal = about(row);
+    std::vector<double> upper;
+    double lower = -std::numeric_limits<double>::infinity();
+    for (const Vector& vertex : about_) {
+      const Vector terms = normal.cwiseProduct(vertex);
+      const double off = relative * terms.lpNorm<1>() + std::numeric_limits<double>::min();
+      upper.push_back(terms.sum() + off);
+      lower = std::max(lower, terms.sum() - off);
+    }
+    std::optional<Rational> largest;
+    for (std::size_t i = 0; i < upper.size(); ++i) {
+      if (upper[i] < lower) continue;
+      Rational product = rational::dot(row, exact_[i]);
+      if (!largest || product > *largest) largest = std::move(product);
+    }
+    return *largest;
   }
-  return *largest;
-}
+
+ private:
+  const std::vector<RationalVector>& exact_;
+  std::vector<Vector> about_;
+};
 
 /// Rows of the constrained zonotope under construction, in the variables ξ of the box.
 class Rows {
@@ -105,7 +116,7 @@ class Rows {
   Rows(const Vector& center, const Vector& radius)
       : c_(rational::exact(center)), r_(rational::exact(radius)) {}
 
-  void add(const RationalVector& inequality, bool is_equation, const Description& generators) {
+  void add(const RationalVector& inequality, bool is_equation, const Vertices& vertices) {
     const RationalVector row = scaled_row(inequality);
     const Index n = static_cast<Index>(c_.size());
     Rational offset = row[0], error = 0, slack = 0;  // offset + aᵀGξ ∈ [0, slack] on the polytope
@@ -120,7 +131,7 @@ class Rows {
       if (sgn(error) != 0 || sgn(offset) != 0) exact_ = false;
       return;
     }
-    slack = std::max(slack, largest_product(row, generators));
+    slack = std::max(slack, vertices.largest_product(row));
     if (is_equation) {
       const double b = rounded(-offset);
       const Rational width = error + abs(rational::exact(b) + offset);
@@ -206,9 +217,10 @@ Polytope::Export enclose_bounded(const Description& generators, const Descriptio
     radius[i] = rounded_up(std::max(Rational(upper - middle), Rational(middle - lower)));
     if (radius[i] != 0) kept.push_back(i);
   }
+  const Vertices vertices(generators);
   Rows rows(center, radius);
   for (std::size_t i = 0; i < inequalities.rows.size(); ++i)
-    rows.add(inequalities.rows[i], inequalities.linear[i], generators);
+    rows.add(inequalities.rows[i], inequalities.linear[i], vertices);
   LineForm X;
   X.c = center;
   rows.fill(kept, X);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "cordon/core/error.hpp"
+#include "cordon/solvers/exact_budget.hpp"
 #include "solvers/polytope_representation.hpp"
 
 namespace cordon::polytope {
@@ -86,6 +87,8 @@ class Normals {
  private:
   void extend(std::size_t next, const RationalMatrix& echelon, const std::vector<Index>& pivots) {
     if (echelon.rows() == r_ - 1) {
+      constexpr double per_entry = 32;  // numbers are short, fractions are not cheap
+      ExactBudget::spend(per_entry * static_cast<double>(r_ * r_));
       RationalVector normal = rational::null_space(echelon).row(0);
       make_direction(normal);
       normals_.insert(std::move(normal));

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cordon/core/error.hpp"
+#include "cordon/solvers/exact_budget.hpp"
 #include "solvers/polytope_representation.hpp"
 
 namespace cordon::polytope {
@@ -22,7 +23,10 @@ constexpr int most_simplices = 200'000;
 class Triangulation {
  public:
   Triangulation(const Description& generators, const Description& inequalities)
-      : vertices_(generators.rows), dim_(generators.dim) {
+      : vertices_(generators.rows),
+        dim_(generators.dim),
+        simplex_work_(static_cast<double>(dim_ * dim_ * dim_) * words(generators)) {
+    ExactBudget::spend(product_work(generators, inequalities));
     for (const RationalVector& row : inequalities.rows) {
       Face facet;
       for (std::size_t v = 0; v < vertices_.size(); ++v) {
@@ -55,6 +59,7 @@ class Triangulation {
   /// Facets of a face's facet: its largest proper sections with the others.
   static std::vector<Face> facets_of(const Face& face, const std::vector<Face>& others) {
     std::vector<Face> sections;
+    ExactBudget::spend(static_cast<double>(face.size() * others.size()));
     for (const Face& other : others) {
       Face section;
       std::set_intersection(face.begin(), face.end(), other.begin(), other.end(),
@@ -78,6 +83,7 @@ class Triangulation {
       throw Error(Errc::unsupported, "polytope: the volume needs more than " +
                                          std::to_string(most_simplices) + " simplices");
     }
+    ExactBudget::spend(simplex_work_);
     RationalMatrix edges(dim_, dim_);
     const RationalVector& origin = vertices_[static_cast<std::size_t>(apexes_[0])];
     for (Index i = 0; i < dim_; ++i) {
@@ -93,6 +99,7 @@ class Triangulation {
 
   const std::vector<RationalVector>& vertices_;
   Index dim_;
+  double simplex_work_;
   std::vector<Face> facets_;
   std::vector<int> apexes_;
   Rational sum_ = 0;
