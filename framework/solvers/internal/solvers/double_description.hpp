@@ -33,8 +33,8 @@ Description generators_of(const Description& inequalities);
 /// -1 ≥ 0.
 Description inequalities_of(const Description& generators);
 
-/// The answer, and what was converted without redundancy, where that follows: not of descriptions
-/// with linear rows, of ∅, nor where rows imply equations or generators lines.
+/// The answer, and what was converted without redundancy (told as the conversion back), where that
+/// follows: not of linear rows, of ∅, nor where rows imply equations or generators imply lines.
 struct Conversion {
   Description answer;
   std::optional<Description> needed = std::nullopt;

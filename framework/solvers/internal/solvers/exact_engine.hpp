@@ -31,7 +31,7 @@ class ExactEngine {
 ExactEngine& own_engine();
 
 /// Is told every question that the own engine has answered, right after the answer. Questions that
-/// it refused with an error are not told.
+/// it refused with an error are not told; what follows from an answer is told as one.
 class ExactObserver {
  public:
   ExactObserver() = default;

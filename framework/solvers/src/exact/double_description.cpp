@@ -174,10 +174,25 @@ Conversion converted_to_inequalities(const Description& generators) {
 
 }  // namespace
 
+Description generators_of(const Description& inequalities) {
+  Description answer = converted_to_generators(inequalities).answer;
+  tell_exact_observer(
+      [&](ExactObserver& observer) { observer.converted_to_generators(inequalities, answer); });
+  return answer;
+}
+
+Description inequalities_of(const Description& generators) {
+  Description answer = converted_to_inequalities(generators).answer;
+  tell_exact_observer(
+      [&](ExactObserver& observer) { observer.converted_to_inequalities(generators, answer); });
+  return answer;
+}
+
 Conversion generators_and_rows(const Description& inequalities) {
   Conversion found = converted_to_generators(inequalities);
   tell_exact_observer([&](ExactObserver& observer) {
     observer.converted_to_generators(inequalities, found.answer);
+    if (found.needed) observer.converted_to_inequalities(found.answer, *found.needed);
   });
   return found;
 }
@@ -186,16 +201,9 @@ Conversion inequalities_and_points(const Description& generators) {
   Conversion found = converted_to_inequalities(generators);
   tell_exact_observer([&](ExactObserver& observer) {
     observer.converted_to_inequalities(generators, found.answer);
+    if (found.needed) observer.converted_to_generators(found.answer, *found.needed);
   });
   return found;
-}
-
-Description generators_of(const Description& inequalities) {
-  return generators_and_rows(inequalities).answer;
-}
-
-Description inequalities_of(const Description& generators) {
-  return inequalities_and_points(generators).answer;
 }
 
 }  // namespace cordon
