@@ -185,8 +185,9 @@ std::vector<bool> PointedCone::needed(const std::vector<Integers>& given) const 
   std::vector<bool> answer;
   for (const Integers& row : given) {
     const auto place = std::lower_bound(rows_.begin(), rows_.end(), row);
-    answer.push_back(place != rows_.end() && *place == row &&
-                     alone[static_cast<std::size_t>(place - rows_.begin())]);
+    const auto i = static_cast<std::size_t>(place - rows_.begin());
+    answer.push_back(place != rows_.end() && *place == row && alone[i]);
+    if (answer.back()) alone[i] = false;  // of equal rows, one
   }
   return answer;
 }
