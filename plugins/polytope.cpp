@@ -356,8 +356,8 @@ ParamSchema schema() {
                  "outward to doubles; 0 rounds every result",
                  500'000, 0, 100'000'000);
   schema.integer("max_work",
-                 "million operations on machine words, about 300 per second, that one operation "
-                 "may take; what takes more is an error",
+                 "million operations on machine words, 150 to 300 per second, that one operation "
+                 "on sets may take; what takes more is an error",
                  300, 1, 1'000'000);
   schema.integer("facets",
                  "most facets besides those of the interval hull that a reduction keeps, the "
