@@ -261,13 +261,12 @@ struct Polyhedra {
       *why = empty ? Certificate{Certificate::Kind::farkas, Vector::Ones(1), 1} : point_in(X);
     return empty ? Answer::yes : Answer::no;
   }
-  /// The solver's point of the view, where it proves something: thin sets may leave it no room.
+  /// The solver's point of the view, where it proves something: thin sets may leave it no room. Of
+  /// a view that is outer it proves what is recorded, and no more.
   static Certificate point_in(const Value& X) {
     const View& view = X.view();
     Certificate why;
-    if (view.claim == Tightness::exact && cordon::is_empty(view, &why) == Answer::no &&
-        proves_not_empty(view, why))
-      return why;
+    if (cordon::is_empty(view, &why) == Answer::no && proves_not_empty(view, why)) return why;
     return {};
   }
   /// `no` beyond the rounding of data alone.
