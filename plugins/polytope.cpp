@@ -357,7 +357,7 @@ ParamSchema schema() {
   schema.integer("max_work",
                  "million operations on machine words, 150 to 300 per second, that one operation "
                  "on sets may take; what takes more is an error",
-                 300, 1, 1'000'000);
+                 100, 1, 1'000'000);
   schema.integer("facets",
                  "most facets besides those of the interval hull that a reduction keeps, the "
                  "largest ones; 0 keeps all; absent: all for one and two states, 60 for three, 6 "
