@@ -114,9 +114,8 @@ class Certificate:
 
     def check(self) -> bool:
         """Repeats the proof in rational arithmetic. False: this proof does not hold, which says
-        nothing of the statement itself. Bounds by structure, and those of sets with lines, are
-        compared with a slack of some units in the last place of the numbers in them;
-        `proven_bound` has none."""
+        nothing of the statement itself. Bounds are compared with a slack of some units in
+        the last place of the numbers in them; `proven_bound` has none."""
         if not self.statement.is_well_formed() or not np.isfinite(self.data).all():
             return False
         rule = _RULES[self.statement.what]
@@ -178,6 +177,16 @@ def _upper(X: "Set", d: Floats) -> Optional[Bound]:
     found = X.support(d)
     if found.certificate is not None:
         return found.certificate._proven()
+    if X.has_exact_form and X.representation != "line_zonotope":
+        # whose rows are those of the form, and one for each inequality
+        proof = X.as_("line_zonotope").support(d).certificate
+        form = Form(X.blocks())
+        if proof is None or len(proof.data) != len(form.b) + len(form.h):
+            return None
+        data = rational.vector(proof.data)
+        for i in range(len(form.b), len(data)):
+            data[i] = max(data[i], Fraction(0))
+        return bound_of(form, rational.vector(d), "rows", data)
     if X.has_exact_form or math.isnan(found.value) or found.value == math.inf:
         return None
     return found.value if math.isinf(found.value) else Fraction(found.value)
@@ -221,12 +230,10 @@ def _check_support(proof: Certificate, forms: List[Form], data: List[Fraction]) 
         return False
     if not isinstance(proven, Fraction) or statement.bound == -math.inf:
         return proven == -math.inf
-    slack = Fraction(0)
-    if proof.kind == "structure" or form.lines:
-        size = sum((abs(a) * (abs(c) + sum((abs(g) for g in row), Fraction(0)))
-                    for a, c, row in zip(_vector(proof), form.c, form.G)), abs(proven))
-        size += sum((abs(b * y) for b, y in zip(form.b, data)), Fraction(0))
-        slack = SLACK * (form.dim + form.generators + 2) * size
+    size = sum((abs(a) * (abs(c) + sum((abs(g) for g in row), Fraction(0)))
+                for a, c, row in zip(_vector(proof), form.c, form.G)), abs(proven))
+    size += sum((abs(b * y) for b, y in zip(form.b, data)), Fraction(0))
+    slack = SLACK * (form.dim + form.generators + 2) * size
     return bool(proven <= Fraction(statement.bound) + slack)
 
 

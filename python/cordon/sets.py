@@ -238,6 +238,8 @@ class Set:
     def hull(self) -> Hull:
         """The smallest box around X as far as proven."""
         lower, upper, proofs = self._set.hull()
+        if (lower > upper).any():  # empty, which is what is proven
+            proofs = [self._set.is_empty()[1]] * len(proofs)
         made: List[Optional[Certificate]] = []
         for i, proof in enumerate(proofs):
             d = np.zeros(self.dim)
@@ -275,7 +277,7 @@ class Set:
         view = self.view()
         claim = "exact" if view.pop("claim") == "exact" and self.claim == "exact" else "outer"
         parameters = dict(self._parameters)
-        if self._set.rounding != "nominal":
+        if self._set.rounding == "outward":
             parameters.setdefault("rounding", self._set.rounding)
         return _restored, (view, claim, self.representation, parameters)
 

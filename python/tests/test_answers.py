@@ -74,7 +74,7 @@ def test_sets_go_through_pickle(protocol):
         except co.Error:
             continue
         Z = pickle.loads(pickle.dumps(Y, protocol))
-        if Y.has_exact_form and Y.representation != "interval":
+        if Y.has_exact_form and Y.representation not in ("interval", "polytope"):
             assert_same_set(Y, Z, Y.claim)
         else:  # an enclosure
             assert Z.representation == Y.representation
@@ -150,7 +150,7 @@ def test_answers_and_proofs_go_through_pickle():
                 assert (before.kind, before.margin) == (after.kind, after.margin)
                 assert same(before.data, after.data)
                 assert before.statement.what == after.statement.what
-                if Y.representation != "interval":
+                if Y.representation not in ("interval", "polytope"):  # written anew
                     assert after.check()
                     counts += 1
     assert counts > 300
