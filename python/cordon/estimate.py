@@ -40,11 +40,9 @@ class Estimate:
     def consistent(self) -> Answer:
         """Is the set not empty?"""
         status: str = self._answer[0]
-        proof: "Optional[Tuple[str, NDArray[np.float64], float]]" = self._answer[1]
-        if proof is None:
-            return Answer(status, question="consistent")
-        statement = Statement("empty" if status == "no" else "not empty", (self.set,))
-        return Answer(status, Certificate(*proof, statement), question="consistent")
+        statement = Statement.of_emptiness(self.set, "yes" if status == "no" else "no")
+        certificate = Certificate.of(self._answer[1], statement) if status != "unknown" else None
+        return Answer(status, certificate, question="consistent")
 
     @property
     def hull(self) -> Hull:
