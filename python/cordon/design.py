@@ -40,7 +40,8 @@ class Design:
         self.separates = Answer(self.exact.get("separates", "unknown"), question="separates")
 
     def __repr__(self) -> str:
-        return f"<design {self.name}: {self.status}, cost {self.cost:g}, separates: {self.separates}>"
+        return (f"<design {self.name}: {self.status}, cost {self.cost:g}, "
+                f"separates: {self.separates}>")
 
 
 def _designs(study: _cordon.Study, pipeline: str) -> List[Design]:

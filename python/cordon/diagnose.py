@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Union
+from typing import (TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTuple, Optional,
+                    Sequence, Union)
 
 from . import _cordon
 from .samples import samples
@@ -41,7 +42,8 @@ class Diagnosis:
         self.mode: Optional[str] = modes[found["mode"]] if found["mode"] >= 0 else None
         self.since: int = found["since"]
         self.reset: bool = found["reset"]
-        self.suggested: Optional[str] = modes[found["suggested"]] if found["suggested"] >= 0 else None
+        hint: int = found["suggested"]
+        self.suggested: Optional[str] = modes[hint] if hint >= 0 else None
         #: Names of the modes that are not excluded.
         self.candidates: List[str] = [name for name, mode in zip(modes, found["modes"])
                                       if mode["candidate"]]

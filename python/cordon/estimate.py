@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Set-based observers, sample by sample.
 
-    observer = cordon.Observer("prediction_correction", model, backend="zonotope", max_generators=20)
+    observer = cordon.Observer("prediction_correction", model, max_generators=20)
     for estimate in observer.run(u, y):
         print(estimate.k, estimate.hull.lower, estimate.hull.upper)
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import (TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTuple, Optional,
+                    Sequence, Tuple, Union)
 
 from . import _cordon
 from .answers import Answer
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 
 
 class Estimate:
-    """What a sample has told: `set` holds every state of time `k` that model, bounds and the data so
-    far allow. `consistent.no`: the set is proven empty, so that the data contradict them."""
+    """What a sample has told: `set` holds every state of time `k` that model, bounds and the data
+    so far allow. `consistent.no`: the set is proven empty, so that the data contradict them."""
 
     __slots__ = ("k", "set", "_answer", "_hull")
 
@@ -95,15 +96,16 @@ class Observer:
         is refused."""
         return Estimate(*self._made.step(u, y, missing))
 
-    def run(self, u: "ArrayLike | None", y: "ArrayLike", nan_is_missing: bool = False) -> Iterator[Estimate]:
-        """Steps over rows: u of shape (samples, inputs) or None, y of shape (samples, outputs). With
-        `nan_is_missing`, outputs that are NaN are missing ones."""
+    def run(self, u: "ArrayLike | None", y: "ArrayLike",
+            nan_is_missing: bool = False) -> Iterator[Estimate]:
+        """Steps over rows: u of shape (samples, inputs) or None, y of shape (samples, outputs).
+        With `nan_is_missing`, outputs that are NaN are missing ones."""
         return (self.step(*sample) for sample in samples(u, y, nan_is_missing))
 
     def estimates(self, u: "ArrayLike | None", y: "ArrayLike",
                   nan_is_missing: bool = False) -> List[Estimate]:
-        """Takes all rows in one go, as `run` does one by one, and returns all estimates: the way for
-        long records, and for several observers in threads, which wait for each other otherwise."""
+        """Takes all rows in one go, as `run` does one by one, and returns all estimates: the way
+        for long records, and for several observers in threads, which wait for each other otherwise."""
         return [Estimate(*found) for found in self._made.estimates(u, y, nan_is_missing)]
 
     def replace(self, X: Set) -> None:

@@ -19,7 +19,8 @@ The first line of the class's docstring is what tables and messages say of it.
 
 from __future__ import annotations
 
-from typing import Any, Callable, ClassVar, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Type, TypeVar
+from typing import (Any, Callable, ClassVar, Dict, List, Mapping, NamedTuple, Optional, Sequence,
+                    Tuple, Type, TypeVar)
 
 import numpy as np
 
@@ -201,7 +202,8 @@ class Law(NamedTuple):
 def conform(name: str, kind: str = "observer", *, laws: str = "*", seed: int = 1, cases: int = 80,
             tell: Optional[Callable[[str], None]] = None, **parameters: Any) -> List[Law]:
     """Checks the laws of a kind on random systems, as `cordon conform` does, in this process: a
-    component that crashes or hangs takes the process along. `tell` hears of each law that failed."""
+    component that crashes or hangs takes the process along. `tell` hears of each law that
+    failed."""
     found = [Law(*result) for result in _cordon.conform(kind, name, parameters, laws, seed, cases)]
     for law in found:
         if tell is not None and law.status == "failed":

@@ -30,8 +30,8 @@ def _axes(ax: Any, count: int = 1) -> Any:
 
 
 def outline(X: Set, dims: Tuple[int, int] = (0, 1), count: int = 128) -> "np.ndarray[Any, Any]":
-    """A polygon, shape (corners, 2), around two coordinates of a bounded set: where lines of `count`
-    directions that touch the set meet. It holds the set up to rounding; a polytope's own edges are
+    """A polygon, shape (corners, 2), around two coordinates of a bounded set: where lines of
+    `count` directions that touch the set meet. It holds the set up to rounding; a polytope's own edges are
     met where `vertices()` can tell them."""
     angles = 2 * np.pi * np.arange(count) / count
     directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -46,7 +46,7 @@ def outline(X: Set, dims: Tuple[int, int] = (0, 1), count: int = 128) -> "np.nda
         pass  # no polytope, or one that is too large
     h = np.array([flat.support(d).value for d in directions])
     if not np.isfinite(h).all():
-        raise Error("the set is unbounded in these coordinates, or its bounds could not be computed")
+        raise Error("the set is unbounded in these coordinates, or its bounds are not known")
     following = np.roll(np.arange(count), -1)
     a, b = directions, directions[following]
     det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

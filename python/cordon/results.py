@@ -205,7 +205,7 @@ class Comparison(NamedTuple):
 
 
 def compare(*results: Union["Results", str, "os.PathLike[str]"]) -> Comparison:
-    """Compares two or more finished runs or sweeps, by the names of pipelines and values of axes."""
+    """Compares two or more finished runs or sweeps, by names of pipelines and values of axes."""
     directories = [one.directory if isinstance(one, Results) else Path(one) for one in results]
     told = _cordon.compare(directories)
     return Comparison(told["runs"], told["axes"], [ComparedNumber(*row) for row in told["rows"]],

@@ -19,8 +19,9 @@ def samples(u: "ArrayLike | None", y: "ArrayLike", nan_is_missing: bool) -> Iter
     outputs = np.asarray(y)
     inputs = None if u is None else np.asarray(u)
     if outputs.ndim != 2 or (inputs is not None and inputs.ndim != 2):
+        found = None if inputs is None else inputs.shape
         raise ValueError("y and u need a row per sample: shapes (samples, outputs) and (samples, "
-                         f"inputs), not {outputs.shape} and {None if inputs is None else inputs.shape}")
+                         f"inputs), not {outputs.shape} and {found}")
     if inputs is not None and len(inputs) != len(outputs):
         raise ValueError(f"u has {len(inputs)} samples, y has {len(outputs)}")
     if nan_is_missing and outputs.dtype.kind != "f":

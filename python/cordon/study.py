@@ -14,7 +14,8 @@ import json
 import os
 import tempfile
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, Mapping, MutableMapping, NamedTuple, Optional, Union
+from typing import (Any, Callable, Dict, Iterator, List, Mapping, MutableMapping, NamedTuple,
+                    Optional, Union)
 
 from . import _cordon
 from .errors import Error, InputError, Problem
@@ -26,8 +27,8 @@ Progress = Callable[[int, int, int], None]
 
 class Study(MutableMapping[str, Any]):
     """A study file (docs/study_format.md) as a dictionary: `Study(path)` reads one,
-    `Study({"cordon": 1, ...})` makes one; entries are read and changed as those of dictionaries, and
-    may hold arrays and sets. Files that it names are looked for in the folder of `file`."""
+    `Study({"cordon": 1, ...})` makes one; entries are read and changed as those of dictionaries,
+    and may hold arrays and sets. Files that it names are looked for in the folder of `file`."""
 
     def __init__(self, source: Union[str, "os.PathLike[str]", Mapping[str, Any]],
                  file: Optional["os.PathLike[str]"] = None) -> None:
@@ -126,8 +127,8 @@ class Study(MutableMapping[str, Any]):
     def sweep(self, out: Union[str, "os.PathLike[str]"], *, jobs: Optional[int] = None,
               resume: bool = False, report: bool = False,
               progress: Union[bool, Progress] = False) -> "SweepResults":
-        """Runs all points of the study's sweep, as `cordon run` does, `jobs` at a time (None: as many
-        as there are cores). `resume` goes on after what an interrupted one has left in `out`."""
+        """Runs all points of the study's sweep, as `cordon run` does, `jobs` at a time (None: as
+        many as there are cores). `resume` goes on after what an interrupted one has left in `out`."""
         study = self.checked()
         if not study.has_sweep:
             raise Error("the study has no sweep: run it by run()")

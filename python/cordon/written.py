@@ -89,7 +89,8 @@ class Model:
         x⁺ = A x + B u + Bw w,   y = C x + D u + Dv v,   x₀ ∈ X0, w ∈ W, v ∈ V
 
     Matrices have the shapes given there; sets are `cordon` sets, or dictionaries as in studies.
-    `type` is "descriptor" where there is an E, "nonlinear" where there are formulas `f`, else "lti".
+    `type` is "descriptor" where there is an E, "nonlinear" where there are formulas `f`, else
+    "lti".
     Wrong arguments raise `InputError` where the model is used, and by `check()`.
 
         model = cordon.Model(A=[[1, 0.1], [0, 1]], C=[[1, 0]], X0=cordon.interval([-1, -1], [1, 1]),

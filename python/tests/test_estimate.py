@@ -71,7 +71,8 @@ def test_wrong_arguments_have_the_messages_of_studies():
         "/pipelines/0/observer/max_generatrs"]
     assert "max_generators" in raised.value.problems[0].suggestion
     with pytest.raises(co.InputError) as raised:
-        co.Observer("luenberger", mass(C=[[1, 0, 0]], V=co.interval([-1, -1], [1, 1])), gain="kalman")
+        wrong = mass(C=[[1, 0, 0]], V=co.interval([-1, -1], [1, 1]))
+        co.Observer("luenberger", wrong, gain="kalman")
     assert len(raised.value.problems) >= 2
     with pytest.raises(co.InputError, match="did you mean"):
         co.Observer("prediction_corection", mass())
