@@ -20,7 +20,7 @@ from .answers import Answer
 from .certificates import Certificate, Statement
 from .design import Design, design_input, designs_of
 from .diagnose import Diagnoser, Diagnosis, FaultBound
-from .errors import Error, InputError, Problem
+from .errors import ArgumentError, Error, InputError, Problem
 from .estimate import Estimate, Gain, Observer
 from .extend import Law, conform
 from .results import ComparedNumber, Comparison, Pipeline, Results, compare
@@ -30,7 +30,7 @@ from .study import Study, SweepResults
 from .written import Model
 
 __all__ = [
-    "Answer", "Certificate", "ComparedNumber", "Comparison", "Design", "Diagnoser", "Diagnosis",
+    "Answer", "ArgumentError", "Certificate", "ComparedNumber", "Comparison", "Design", "Diagnoser", "Diagnosis",
     "Error", "Estimate", "FaultBound", "Gain", "Hull", "InputError", "Law", "Model", "Observer",
     "Pipeline", "Problem", "Results", "Set", "Statement", "Study", "Support", "SweepResults",
     "Volume", "compare", "components", "conform", "constrained_zonotope", "design_input",

@@ -51,6 +51,8 @@ class Answer:
                         "value: write .yes (proven), .no (proven not to be so), or compare .status")
 
     def __eq__(self, other: object) -> bool:
+        if isinstance(other, bool):
+            self.__bool__()
         if isinstance(other, str):
             return self.status == other
         return isinstance(other, Answer) and self.status == other.status

@@ -33,5 +33,10 @@ class Error(Exception):
         return type(self), (str(self), self.code, [tuple(problem) for problem in self.problems])
 
 
+class ArgumentError(Error, ValueError):
+    """An argument of a wrong size, or with a value that it cannot have; the `code` is "dimension",
+    "not_finite" or "invalid"."""
+
+
 class InputError(Error, ValueError):
     """A study, an argument or a file that is wrong, with all its problems in `problems`."""

@@ -15,7 +15,7 @@ from . import _cordon
 from .answers import Answer
 from .certificates import Certificate, Statement
 from .samples import samples
-from .sets import Hull, Set
+from .sets import Hull, Set, _set
 from .written import Model, component_json, read
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ class Observer:
 
     def start(self, X0: Optional[Set] = None, k: int = 0) -> None:
         """Begins anew at time k, from X0 in place of the model's initial set."""
-        self._made.start(None if X0 is None else X0._set, k)
+        self._made.start(None if X0 is None else _set(X0, "X0"), k)
 
     def step(self, u: "ArrayLike | None", y: "ArrayLike", missing: Sequence[int] = ()) -> Estimate:
         """Takes the sample of the next time: the input u_k (None: the model has none) and the
@@ -110,7 +110,7 @@ class Observer:
 
     def replace(self, X: Set) -> None:
         """Replaces the set of states at the time of the last sample."""
-        self._made.replace(X._set)
+        self._made.replace(_set(X, "X"))
 
     @property
     def k(self) -> int:

@@ -96,13 +96,21 @@ def _bands(given: Any) -> List[_Band]:
     return [_Band(one.name, one.k, one.lower, one.upper) for one in given]
 
 
+def _with_gaps(band: _Band) -> _Band:
+    """Nothing is drawn where an estimate is empty: its lower bounds are above its upper ones."""
+    lower, upper = band.lower.copy(), band.upper.copy()
+    empty = (lower > upper).any(axis=1)
+    lower[empty] = upper[empty] = np.nan
+    return band._replace(lower=lower, upper=upper)
+
+
 def bounds(given: Union["Results", "Pipeline", Sequence["Pipeline"], Sequence["Estimate"]],
            states: Optional[Sequence[int]] = None, truth: Any = None, ax: Any = None) -> Any:
     """Bounds of states over time as bands, one for each pipeline of results, or of a list of
-    estimates, with the true states where they are known (`truth`, shape (samples, n)). `states`
-    counts from 0; None: all. One pair of axes per state."""
+    estimates, with the true states where they are known (`truth`, shape (samples, n)); empty
+    estimates are gaps. `states` counts from 0; None: all. One pair of axes per state."""
     truth = getattr(given, "truth", None) if truth is None else np.asarray(truth)
-    drawn = _bands(given)
+    drawn = [_with_gaps(band) for band in _bands(given)]
     chosen = list(range(drawn[0].lower.shape[1])) if states is None else list(states)
     axes = np.atleast_1d(_axes(ax, len(chosen)))
     for one, i in zip(axes, chosen):

@@ -67,7 +67,7 @@ class Set:
         -X        {-x}
     """
 
-    __slots__ = ("_set", "_view", "_parameters")
+    __slots__ = ("_set", "_view", "_parameters", "_bounds")
     __array_ufunc__ = None  # numpy leaves A @ X and t + X to us
 
     def __init__(self, made: _cordon.ConvexSet,
@@ -77,6 +77,7 @@ class Set:
         self._set = made
         self._parameters = dict(parameters or {})  # of the representation, for copies elsewhere
         self._view: Optional[Dict[str, Any]] = None
+        self._bounds: "Optional[Tuple[Floats, Floats]]" = None  # of what interval() has made
 
     # What it is
 
@@ -274,6 +275,8 @@ class Set:
     # Copies and texts
 
     def __reduce__(self) -> Tuple[Any, ...]:
+        if self._bounds is not None:
+            return interval, self._bounds
         view = self.view()
         claim = "exact" if view.pop("claim") == "exact" and self.claim == "exact" else "outer"
         parameters = dict(self._parameters)
@@ -307,8 +310,12 @@ def _restored(blocks: Dict[str, Any], claim: str, representation: str,
 
 
 def interval(lower: ArrayLike, upper: ArrayLike) -> Set:
-    """{x : lower ≤ x ≤ upper}, shapes (n,); infinite bounds in both directions only."""
-    return Set(_cordon.ConvexSet.box(lower, upper))
+    """{x : lower ≤ x ≤ upper}, shapes (n,); infinite bounds in both directions only. Kept as centre
+    and radius, which are rounded outward: the set may be larger by a unit in the last place.
+    Models and pickles have the bounds as they were given."""
+    made = Set(_cordon.ConvexSet.box(lower, upper))
+    made._bounds = np.array(lower, dtype=np.float64), np.array(upper, dtype=np.float64)
+    return made
 
 
 def zonotope(c: ArrayLike, G: ArrayLike) -> Set:

@@ -13,6 +13,7 @@ import copy
 import json
 import os
 import tempfile
+import warnings
 from pathlib import Path
 from typing import (Any, Callable, Dict, Iterator, List, Mapping, MutableMapping, NamedTuple,
                     Optional, Union)
@@ -120,6 +121,10 @@ class Study(MutableMapping[str, Any]):
         directory = Path(keeper.name if keeper else out)  # type: ignore[arg-type]
         with _Bar(progress, study.pipelines) as bar:
             told = _cordon.run(study, directory, sets, pipeline, report, bar.tell)
+        for found in told["pipelines"]:
+            if found["error"]:
+                warnings.warn(f"pipeline {found['name']!r} ended with an error: {found['error']}",
+                              RuntimeWarning, stacklevel=2)
         if told["report_error"]:
             raise Error(f"the results are complete, but there is no report: {told['report_error']}")
         return Results(directory, keeper)

@@ -17,6 +17,9 @@ from .sets import Set
 
 def set_json(X: Set) -> Dict[str, Any]:
     """A set with an exact form, as studies write sets."""
+    if X._bounds is not None:
+        return {"type": "box", **{name: to_json(bound) for name, bound in
+                                  zip(("lower", "upper"), X._bounds)}}
     view = X.view()
     if view["claim"] != "exact" or view["h"].size > 0:
         raise Error(f"a set of \"{X.representation}\" has no exact form that a study could hold: "

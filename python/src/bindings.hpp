@@ -2,6 +2,8 @@
 // The parts of the extension, one function each.
 #pragma once
 
+#include <chrono>
+#include <optional>
 #include <pybind11/pybind11.h>
 
 #include "cordon/core/answer.hpp"
@@ -26,6 +28,18 @@ py::tuple box_of(const Box& box);        ///< (lower, upper)
 py::dict form_of(const LineForm& form);  ///< blocks by name
 LineForm form_from(const py::dict& blocks);
 Params params_from(const py::dict& given);
+
+/// What ends programs, as Ctrl-C does, where it was raised in a component that is written in
+/// Python: it is raised again where the call of the package ends. With the lock.
+std::optional<py::error_already_set>& interruption();
+/// Raises what signals ask for, at most twenty times a second; without the lock.
+class Signals {
+ public:
+  void look();
+
+ private:
+  std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();
+};
 
 /// Without the interpreter's lock, so that other threads of Python run on.
 template <class Work>

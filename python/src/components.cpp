@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Observers, diagnosers and designers of a study's pipelines, one sample at a time.
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <pybind11/stl.h>
@@ -42,8 +43,27 @@ class Turn {
   std::atomic_flag& busy_;
 };
 
+/// Indices of outputs, ascending.
+std::vector<Index> missing_of(py::handle given) {
+  std::vector<Index> missing;
+  for (const py::handle& one : given) {
+    const bool is_numpy = py::hasattr(one, "dtype");
+    if (py::isinstance<py::bool_>(one) ||
+        (is_numpy && one.attr("dtype").attr("kind").cast<std::string>() == "b")) {
+      throw py::type_error(
+          "missing names outputs by their indices, from 0; those of a mask are "
+          "np.flatnonzero(mask)");
+    }
+    missing.push_back(one.cast<Index>());
+  }
+  std::sort(missing.begin(), missing.end());
+  missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
+  return missing;
+}
+
 /// The sample of the next time. NaN among the outputs is refused here: what is missing is named.
-Sample sample_of(Index k, py::handle u, py::handle y, const std::vector<Index>& missing) {
+Sample sample_of(Index k, py::handle u, py::handle y, py::handle outputs) {
+  const std::vector<Index> missing = missing_of(outputs);
   Sample sample{k, u.is_none() ? Vector(0) : vector_of(u, "u"), vector_of(y, "y")};
   for (const Index i : missing) {
     if (i < 0 || i >= sample.y.size())
@@ -81,7 +101,7 @@ class ObserverHandle {
     next_ = k;
   }
 
-  py::tuple step(py::handle u, py::handle y, const std::vector<Index>& missing) {
+  py::tuple step(py::handle u, py::handle y, py::handle missing) {
     const Turn turn(busy_);
     const Sample sample = sample_of(next_, u, y, missing);
     const Estimate estimate = unlocked([&] { return observer_->step(sample); });
@@ -102,8 +122,10 @@ class ObserverHandle {
       throw py::value_error(
           "y holds NaN; where that means a missing output, say nan_is_missing=True");
     std::vector<Estimate> found;
+    Signals signals;
     unlocked([&] {
       for (Index i = 0; i < outputs.rows(); ++i, ++next_) {
+        signals.look();
         const Vector row = outputs.row(i);
         std::vector<Index> missing;
         for (Index j = 0; j < row.size(); ++j) {
@@ -217,7 +239,7 @@ class DiagnoserHandle {
     next_ = k;
   }
 
-  py::dict step(py::handle u, py::handle y, const std::vector<Index>& missing) {
+  py::dict step(py::handle u, py::handle y, py::handle missing) {
     const Turn turn(busy_);
     const Sample sample = sample_of(next_, u, y, missing);
     const Diagnosis found = unlocked([&] { return diagnoser_->step(sample); });

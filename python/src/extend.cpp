@@ -22,7 +22,8 @@ auto locked(const std::string& what, Call&& call) {
   try {
     return call();
   } catch (py::error_already_set& error) {
-    if (error.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt();
+    if (error.matches(PyExc_KeyboardInterrupt) || error.matches(PyExc_SystemExit))
+      interruption() = error;
     throw Error(Errc::plugin, what + ": " + error.what());
   } catch (const py::cast_error& error) {
     throw Error(Errc::plugin, what + " returns a value of another type than is needed");
@@ -280,11 +281,9 @@ void add_entry(ComponentEntry entry) {
   });
 }
 
-void register_type(const std::string& kind, const py::object& type, const std::string& name,
-                   const std::string& summary, const py::list& parameters) {
-  ComponentInfo info{name, summary, "", schema_from(parameters)};
-  // Never destroyed: the registry lives as long as the process.
-  const py::object& kept = *new py::object(type);
+/// `kept` is the class that is asked, as long as the process lives.
+void add_type(const std::string& kind, const std::string& name, ComponentInfo info,
+              const py::object& kept) {
   if (kind == "observer") {
     ObserverEntry entry{std::move(info), {}, {}};
     entry.create = [name, &kept](const ObserverContext& context, const Params& params) {
@@ -307,6 +306,20 @@ void register_type(const std::string& kind, const py::object& type, const std::s
   }
 }
 
+void register_type(const std::string& kind, const py::object& type, const std::string& name,
+                   const std::string& summary, const py::list& parameters) {
+  // Never destroyed: the registry lives as long as the process.
+  static auto& known = *new std::map<std::string, std::pair<py::object, std::string>>;
+  const std::string key = kind + " " + name, written = py::repr(parameters).cast<std::string>();
+  const auto before = known.find(key);
+  if (before != known.end() && before->second.second == written) {
+    before->second.first = type;
+    return;
+  }
+  add_type(kind, name, {name, summary, "", schema_from(parameters)},
+           known.try_emplace(key, type, written).first->second.first);
+}
+
 py::list conform(const std::string& kind, const std::string& name, const py::dict& parameters,
                  const std::string& laws, std::uint64_t seed, Index cases) {
   const Registry& registry = installed_components();
@@ -324,7 +337,11 @@ py::list conform(const std::string& kind, const std::string& name, const py::dic
   subject.make = [&](const Params& params) { return registry.make<BackendEntry>(name, params); };
   subject.registry = {std::shared_ptr<const void>(), &registry};
   const conformance::Options options{laws, seed, cases};
-  const auto results = unlocked([&] { return conformance::check(subject, options); });
+  Signals signals;
+  const auto results = unlocked([&] {
+    return conformance::check(subject, options,
+                              [&](const conformance::Law&, Index, Index) { signals.look(); });
+  });
   py::list made;
   for (const conformance::Result& result : results) {
     made.append(py::make_tuple(result.law, std::string(to_string(result.status)), result.reason,

@@ -19,7 +19,12 @@ std::shared_ptr<const SetBackend> backend_of(const std::string& name, const py::
 }
 
 Inequalities inequalities_from(py::handle H, py::handle h) {
-  return {matrix_of(H, "H"), vector_of(h, "h")};
+  Inequalities rows{matrix_of(H, "H"), vector_of(h, "h")};
+  if (rows.H.rows() != rows.h.size()) {
+    throw Error(Errc::dimension, "H has " + std::to_string(rows.H.rows()) + " rows, h has " +
+                                     std::to_string(rows.h.size()) + " entries");
+  }
+  return rows;
 }
 
 py::dict view_of(const ConvexSet& X) {

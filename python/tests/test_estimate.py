@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -94,6 +96,34 @@ def test_samples_that_are_wrong():
     assert observer.k == 0  # none of them was taken
     estimate = observer.step([0], [np.nan], missing=[0])
     assert estimate.hull.upper == pytest.approx([1, 1]) and observer.k == 1
+
+
+def test_masks_are_no_indices():
+    model = mass(C=[[1, 0], [0, 1]], V=co.interval([-0.1, -0.1], [0.1, 0.1]))
+    observer = co.Observer("prediction_correction", model)
+    for mask in (np.array([False, True]), [False, True], np.isnan([0, np.nan])):
+        with pytest.raises(TypeError, match="flatnonzero"):
+            observer.step([0], [0, np.nan], missing=mask)
+    estimate = observer.step([0], [np.nan, np.nan], missing=np.array([1, 0, 1]))
+    assert estimate.k == 0 and observer.k == 1
+
+
+def test_signals_end_long_records():
+    code = """
+import signal, threading, os, time, numpy as np, cordon as co
+model = co.Model(A=np.eye(6) * 0.9, C=np.eye(6), X0=co.interval(-np.ones(6), np.ones(6)),
+                 W=co.interval(-np.ones(6), np.ones(6)), V=co.interval(-np.ones(6), np.ones(6)))
+observer = co.Observer("prediction_correction", model, backend="constrained_zonotope",
+                       max_generators=200, max_constraints=60)
+signal.signal(signal.SIGINT, signal.default_int_handler)
+threading.Timer(1, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+try:
+    observer.estimates(None, np.zeros((100_000, 6)))
+except KeyboardInterrupt:
+    print("ended", observer.k < 100_000)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=30)
+    assert done.stdout == "ended True\n", done.stderr
 
 
 def test_rows_that_do_not_fit():

@@ -135,7 +135,8 @@ def test_two_threads_of_a_sweep_call_python(study, tmp_path):
 
 def test_an_exception_ends_its_pipeline_only(study):
     study["pipelines"] = pipelines("python_broken", "prediction_correction")
-    results = study.run()
+    with pytest.warns(RuntimeWarning, match="python_broken"):
+        results = study.run()
     assert "ZeroDivisionError" in results["python_broken"].summary["error"]
     assert len(results["prediction_correction"].k) == 41
 
@@ -197,9 +198,59 @@ def test_plant_in_a_study():
     assert results["p"].summary["contains_truth_no"] == 0
 
 
+def test_what_ends_programs_is_not_swallowed(study):
+    class Interrupted(Corrected):
+        """Is interrupted at k = 3."""
+
+        name = "python_interrupted"
+
+        def advance(self, X, before, now):
+            if now.k == 3:
+                raise KeyboardInterrupt
+            return super().advance(X, before, now)
+
+    co.extend.register(Interrupted)
+    study["pipelines"] = pipelines("python_interrupted", "prediction_correction")
+    with pytest.raises(KeyboardInterrupt):
+        study.run()
+    observer = co.Observer.of(study, "python_interrupted")
+    with pytest.raises(KeyboardInterrupt):
+        observer.estimates(None, np.zeros((9, 1)))
+
+
+def test_a_class_that_is_written_again_takes_the_place(study):
+    def made(shift):
+        class Shifted(Corrected):
+            """Widens."""
+
+            name = "python_shifted"
+
+            def begin(self, X0, sample):
+                return X0 + shift * co.interval([-1, -1], [1, 1])
+        return Shifted
+    study["pipelines"] = pipelines("python_shifted")
+    widths = []
+    for shift in (1, 2):
+        co.extend.register(made(shift))
+        result = study.run(sets="none")["python_shifted"]
+        widths.append(result.upper[0, 0] - result.lower[0, 0])
+    assert widths == pytest.approx([8, 10])
+
+
 def test_names_are_taken_once_and_classes_are_checked():
+    class Taken(co.extend.Observer):
+        """Has a name of the library's."""
+
+        name = "prediction_correction"
+    with pytest.raises(co.Error, match="prediction_correction"):
+        co.extend.register(Taken)
+
+    class Other(Corrected):
+        """Has other parameters than before."""
+
+        parameters = {}
     with pytest.raises(co.Error, match="python_corrected"):
-        co.extend.register(Corrected)
+        co.extend.register(Other)
     with pytest.raises(TypeError):
         co.extend.register(int)
 

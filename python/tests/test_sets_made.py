@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Representations and constructors; zonotopes computed again by numpy."""
 
+import pickle
+
 import numpy as np
 import pytest
 from test_sets import ALL, BOUNDED, EPS, POINTS, Z, H, compare, corners, h
@@ -102,3 +104,18 @@ def test_against_numpy(seed):
     box = co.interval(c - np.abs(K).sum(1), c + np.abs(K).sum(1))
     assert (Y + c).is_subset(box).yes or (Y + c).is_subset(box).unknown
     assert not X.is_disjoint(co.point(c + G @ xi)).yes
+
+
+@pytest.mark.parametrize("h", [np.ones(1), np.ones(7), np.ones(100_000), np.ones(0)])
+@pytest.mark.parametrize("representation", ["polytope", "zonotope", "line_zonotope"])
+def test_half_spaces_have_a_bound_each(h, representation):
+    with pytest.raises(co.ArgumentError, match="h has"):
+        co.polytope([[1, 0], [-1, 0], [0, 1], [0, -1]], h, representation)
+
+
+def test_intervals_are_pickled_as_they_are():
+    X = co.interval([0.1, -1], [0.3, 1])
+    again = pickle.loads(pickle.dumps(X))
+    for _ in range(5):
+        again = pickle.loads(pickle.dumps(again))
+    assert again.hull().upper.tobytes() == X.hull().upper.tobytes()

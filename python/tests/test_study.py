@@ -63,7 +63,9 @@ def test_saved_and_read_again(study, tmp_path):
     study["system"]["X0"] = co.interval([-3, -3], [3, 3])
     study.save(tmp_path / "saved.json")
     again = co.Study(tmp_path / "saved.json")
-    assert again["system"]["X0"]["type"] == "zonotope"
+    assert again["system"]["X0"] == {"type": "box", "lower": [-3, -3], "upper": [3, 3]}
+    as_box = co.Study(study.file)
+    assert co.compare(study.run(sets="none"), as_box.run(sets="none")).different == []
     assert again.problems() == []
 
 
@@ -209,6 +211,16 @@ def test_plots(examples, study):
     assert len(co.plot.tubes(design).collections) == 4
     turbine = co.Study(examples / "wind_turbine_sensor_faults.json").run(sets="none")
     assert co.plot.residuals(next(iter(turbine.values()))).lines
+
+
+def test_empty_estimates_are_gaps(examples):
+    pytest.importorskip("matplotlib").use("Agg")
+    model = co.Model(A=[[1]], C=[[1]], X0=co.interval([-1], [1]), W=co.interval([-1], [1]),
+                     V=co.interval([-1], [1]))
+    estimates = co.Observer("prediction_correction", model).estimates(None, [[0], [0], [9], [9]])
+    assert [e.consistent.no for e in estimates] == [False, False, True, True]
+    line = co.plot.bounds(estimates).lines[0]
+    assert np.isnan(line.get_ydata()).tolist() == [False, False, True, True]
 
 
 def test_outlines_hold_their_sets():

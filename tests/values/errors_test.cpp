@@ -93,6 +93,18 @@ TEST_CASE("what a representation cannot enclose") {
   CHECK(code_of([] { ConvexSet::space(2, "ellipsoid"); }) == Errc::unsupported);
 }
 
+TEST_CASE("half-spaces with a bound each") {
+  const Matrix H = Matrix::Ones(3, 2);
+  for (const Index bounds : {0, 2, 4, 100'000}) {
+    CAPTURE(bounds);
+    CHECK(code_of([&] {
+            with_rows({make_space(2)}, {H, Vector::Ones(bounds)});
+          }) == Errc::dimension);
+  }
+  CHECK(code_of([&] { with_rows({make_space(3)}, {H, Vector::Ones(3)}); }) == Errc::dimension);
+  CHECK(with_rows({make_space(2)}, {H, Vector::Ones(3)}).rows.rows() == 3);
+}
+
 TEST_CASE("representations that there are none of, with what was perhaps meant") {
   CHECK(code_of([] { hexagon().as("zonotop"); }) == Errc::invalid);
   CHECK_THROWS_WITH_AS(hexagon().as("zonotop"), doctest::Contains("did you mean \"zonotope\"?"),

@@ -20,6 +20,13 @@ void check(const View& X, const std::string& what) {
 }
 
 View with_rows(View X, const Inequalities& more) {
+  if (more.H.rows() != more.h.size() || (more.H.rows() > 0 && more.H.cols() != X.dim())) {
+    throw Error(Errc::dimension, "inequalities: H has " + std::to_string(more.H.rows()) +
+                                     " rows of " + std::to_string(more.H.cols()) +
+                                     " entries, h has " + std::to_string(more.h.size()) +
+                                     " entries, and the set is of " + std::to_string(X.dim()) +
+                                     " dimensions");
+  }
   if (more.rows() == 0) return X;
   const Index old = X.rows.rows();
   X.rows.H.conservativeResize(old + more.rows(), X.dim());
