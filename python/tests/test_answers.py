@@ -235,17 +235,10 @@ def test_plugins_are_found_from_anywhere():
     assert run(code) == "8"
 
 
-def test_import_takes_no_time():
-    """numpy aside, and nothing that is for plots and tables."""
-    code = ("import numpy, sys, time; t = time.process_time(); import cordon; "
-            "print(time.process_time() - t, *(m in sys.modules for m in "
-            "('matplotlib', 'pandas', 'tqdm')))")
-    times = []
-    for _ in range(5):
-        seconds, *heavy = run(code).split()
-        assert heavy == ["False"] * 3
-        times.append(float(seconds))
-    assert min(times) < 0.1
+def test_import_reads_nothing_that_is_for_plots_and_tables():
+    code = ("import sys, cordon; "
+            "print(*(m in sys.modules for m in ('matplotlib', 'pandas', 'tqdm')))")
+    assert run(code).split() == ["False"] * 3
 
 
 def names_of_stub():
