@@ -30,12 +30,12 @@ from .study import Study, SweepResults
 from .written import Model
 
 __all__ = [
-    "Answer", "ArgumentError", "Certificate", "ComparedNumber", "Comparison", "Design", "Diagnoser", "Diagnosis",
-    "Error", "Estimate", "FaultBound", "Gain", "Hull", "InputError", "Law", "Model", "Observer",
-    "Pipeline", "Problem", "Results", "Set", "Statement", "Study", "Support", "SweepResults",
-    "Volume", "compare", "components", "conform", "constrained_zonotope", "design_input",
-    "designs_of", "empty", "extend", "interval", "line_zonotope", "point", "polytope", "space",
-    "strip", "zonotope",
+    "Answer", "ArgumentError", "Certificate", "ComparedNumber", "Comparison", "Design",
+    "Diagnoser", "Diagnosis", "Error", "Estimate", "FaultBound", "Gain", "Hull", "InputError",
+    "Law", "Model", "Observer", "Pipeline", "Problem", "Results", "Set", "Statement", "Study",
+    "Support", "SweepResults", "Volume", "compare", "components", "conform",
+    "constrained_zonotope", "design_input", "designs_of", "empty", "extend", "interval",
+    "line_zonotope", "point", "polytope", "space", "strip", "zonotope",
 ]
 
 

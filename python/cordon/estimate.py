@@ -105,7 +105,8 @@ class Observer:
     def estimates(self, u: "ArrayLike | None", y: "ArrayLike",
                   nan_is_missing: bool = False) -> List[Estimate]:
         """Takes all rows in one go, as `run` does one by one, and returns all estimates: the way
-        for long records, and for several observers in threads, which wait for each other otherwise."""
+        for long records, and for several observers in threads, which wait for each other
+        otherwise."""
         return [Estimate(*found) for found in self._made.estimates(u, y, nan_is_missing)]
 
     def replace(self, X: Set) -> None:

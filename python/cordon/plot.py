@@ -31,8 +31,8 @@ def _axes(ax: Any, count: int = 1) -> Any:
 
 def outline(X: Set, dims: Tuple[int, int] = (0, 1), count: int = 128) -> "np.ndarray[Any, Any]":
     """A polygon, shape (corners, 2), around two coordinates of a bounded set: where lines of
-    `count` directions that touch the set meet. It holds the set up to rounding; a polytope's own edges are
-    met where `vertices()` can tell them."""
+    `count` directions that touch the set meet. It holds the set up to rounding; a polytope's own
+    edges are met where `vertices()` can tell them."""
     angles = 2 * np.pi * np.arange(count) / count
     directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     shadow = np.zeros((2, X.dim))

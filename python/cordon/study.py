@@ -133,7 +133,8 @@ class Study(MutableMapping[str, Any]):
               resume: bool = False, report: bool = False,
               progress: Union[bool, Progress] = False) -> "SweepResults":
         """Runs all points of the study's sweep, as `cordon run` does, `jobs` at a time (None: as
-        many as there are cores). `resume` goes on after what an interrupted one has left in `out`."""
+        many as there are cores). `resume` goes on after what an interrupted one has left in
+        `out`."""
         study = self.checked()
         if not study.has_sweep:
             raise Error("the study has no sweep: run it by run()")

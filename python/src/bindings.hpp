@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 #include <pybind11/pybind11.h>
+#include <type_traits>
 
 #include "cordon/core/answer.hpp"
 #include "cordon/core/box.hpp"
@@ -32,6 +33,8 @@ Params params_from(const py::dict& given);
 /// What ends programs, as Ctrl-C does, where it was raised in a component that is written in
 /// Python: it is raised again where the call of the package ends. With the lock.
 std::optional<py::error_already_set>& interruption();
+/// Raises it, if there is one.
+void raise_interruption();
 /// Raises what signals ask for, at most twenty times a second; without the lock.
 class Signals {
  public:
@@ -44,8 +47,18 @@ class Signals {
 /// Without the interpreter's lock, so that other threads of Python run on.
 template <class Work>
 auto unlocked(Work&& work) {
-  const py::gil_scoped_release released;
-  return work();
+  const auto run = [&] {
+    const py::gil_scoped_release released;
+    return work();
+  };
+  if constexpr (std::is_void_v<decltype(work())>) {
+    run();
+    raise_interruption();
+  } else {
+    auto result = run();
+    raise_interruption();
+    return result;
+  }
 }
 
 }  // namespace cordon::python

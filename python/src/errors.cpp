@@ -43,6 +43,10 @@ std::optional<py::error_already_set>& interruption() {
   return pending;
 }
 
+void raise_interruption() {
+  if (interruption()) throw *std::exchange(interruption(), std::nullopt);
+}
+
 void Signals::look() {
   const auto now = std::chrono::steady_clock::now();
   if (now - looked_ < std::chrono::milliseconds(50)) return;

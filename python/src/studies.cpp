@@ -32,7 +32,7 @@ class Watch {
     const py::gil_scoped_acquire locked;
     try {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      if (interruption()) throw *std::exchange(interruption(), std::nullopt);
+      raise_interruption();
       if (!tell_.is_none()) tell_(numbers...);
     } catch (py::error_already_set& error) {
       if (!failure_) failure_ = std::move(error);
@@ -43,7 +43,6 @@ class Watch {
   /// Throws on what stopped the work.
   void finish() {
     if (failure_) throw *std::exchange(failure_, std::nullopt);
-    if (interruption()) throw *std::exchange(interruption(), std::nullopt);
   }
 
  private:

@@ -13,7 +13,8 @@ SHAPES = ("box", "zonotope", "constrained_zonotope", "line_zonotope", "strip", "
 
 def numbers(rng, *shape):
     """Small integers or any numbers, now and then with zeros."""
-    made = rng.integers(-3, 4, shape).astype(float) if rng.random() < 0.3 else rng.normal(size=shape)
+    whole = rng.random() < 0.3
+    made = rng.integers(-3, 4, shape).astype(float) if whole else rng.normal(size=shape)
     return made * (rng.random(shape) < 0.85)
 
 
@@ -32,7 +33,8 @@ def box(rng, n):
 
 def zonotope(rng, n):
     s = scales(rng, n)
-    return co.zonotope(s * numbers(rng, n), s[:, None] * numbers(rng, n, int(rng.integers(0, n + 4))))
+    c = s * numbers(rng, n)
+    return co.zonotope(c, s[:, None] * numbers(rng, n, int(rng.integers(0, n + 4))))
 
 
 def constraints(rng, m, g, columns):

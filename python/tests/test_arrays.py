@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Arguments: what holds the right numbers gives the right set, and what does not is refused by name.
+"""Arguments: the right numbers give the right set, and what holds none is refused by its name.
 """
 
 import decimal
@@ -271,7 +271,8 @@ def test_factors(s):
         np.testing.assert_array_equal(X.view()["G"], 2 * np.eye(2))
 
 
-@pytest.mark.parametrize("s", [True, np.bool_(True), "2", b"2", 2j, None, [2], np.ones(1), np.eye(2),
+@pytest.mark.parametrize("s", [True, np.bool_(True), "2", b"2", 2j, None, [2], np.ones(1),
+                               np.eye(2),
                                fractions.Fraction(1, 3), decimal.Decimal(2), 2**53 + 1, 10**40,
                                np.longdouble(2), X2, np.ma.array(2.0, mask=True)], ids=repr)
 def test_refused_factors(s):
@@ -289,7 +290,8 @@ def test_factors_that_are_not_finite():
 
 def test_numbers_of_a_strip():
     assert co.strip([1, 0], np.int32(1), np.float32(0.5)).contains([1.5, 9]).yes
-    for d, sigma, name in (("1", 1, "d"), (0, True, "sigma"), ([0], 1, "d"), (0, 2**60 + 1, "sigma"),
+    for d, sigma, name in (("1", 1, "d"), (0, True, "sigma"), ([0], 1, "d"), (0, 2**60 + 1,
+                           "sigma"),
                            (None, 1, "d"), (0, 1j, "sigma"), (0, np.longdouble(1), "sigma")):
         with pytest.raises((TypeError, ValueError), match=f"^{name}:"):
             co.strip([1, 0], d, sigma)
