@@ -41,6 +41,10 @@ if(CORDON_SANITIZE)
     # double the time to compile.
     add_compile_options(-fno-sanitize=null,alignment,object-size,vptr)
   endif()
+  # With the checks in the way GCC no longer sees that what is copied has been set.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    add_compile_options(-Wno-maybe-uninitialized)
+  endif()
   add_link_options(-fsanitize=${CORDON_SANITIZE})
 endif()
 

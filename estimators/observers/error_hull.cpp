@@ -125,7 +125,10 @@ class ErrorHullObserver final : public Observer {
   }
 
   Enclosure do_step(const Sample& before, const Sample& now) override {
-    if (replaced_) go_on_from(*std::exchange(replaced_, {}), before.k);
+    if (replaced_) {
+      go_on_from(*replaced_, before.k);
+      replaced_.reset();
+    }
     before_.estimate = last_;
     before_.k = k_;
     before_.x = x_;
