@@ -22,7 +22,8 @@
 //     bool has_exact_form(const Value&);  View view(const Value&);  Vector maximizer(const Value&,
 //     VectorIn d);  Answer is_subset(const Value&, const Value&, Certificate*),
 //     is_disjoint(const Value&, const Value&, Certificate*);  Result import_view(const View&),
-//     product(const Value&, const Value&);
+//     product(const Value&, const Value&);  void serialize(Value&, Archive&): writes the value or
+//     reads it, and refuses what cannot be one.
 //
 // All are const member functions; preconditions are those of Set and SetBackend (shapes fit,
 // numbers are finite).
@@ -35,6 +36,7 @@
 
 #include <boost/container/small_vector.hpp>
 
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/interfaces/backend.hpp"
 
 namespace cordon::plugins {
@@ -179,6 +181,16 @@ class ValueBackend final : public SetBackend {
   Made do_reduce(const Set& X, Budget budget) const override {
     auto result = representation_.reduce(value(X), budget);
     return result ? make(std::move(*result)) : Made{};
+  }
+  std::unique_ptr<const Set> do_serialize(const Set* X, Archive& archive) const override {
+    if constexpr (requires(Value some) { representation_.serialize(some, archive); }) {
+      Value own = X ? value(*X) : Value{};
+      representation_.serialize(own, archive);
+      if (X) return nullptr;
+      return std::make_unique<Own>(*this, representation_, std::move(own));
+    } else {
+      return SetBackend::do_serialize(X, archive);
+    }
   }
 
   Representation representation_;

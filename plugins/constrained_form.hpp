@@ -21,6 +21,10 @@ struct ConstrainedForm {
 
   Index dim(const Value& X) const { return X.dim(); }
   LineForm line_form(const Value& X) const { return X; }
+  void serialize(Value& X, Archive& archive) const {
+    archive(X);
+    if (!lines && X.lines() > 0) archive.refuse("a constrained zonotope with lines");
+  }
   Complexity complexity(const Value& X) const {
     return {X.generators(), X.lines(), X.constraints()};
   }

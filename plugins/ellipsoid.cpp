@@ -46,6 +46,22 @@ struct Held {
   const Ellipsoid* ellipsoid() const { return std::get_if<Ellipsoid>(&set); }
 };
 
+void serialize(Ellipsoid& X, Index n, Archive& archive) {
+  archive(X.c, X.L, X.r);
+  const bool fits = X.c.size() == n && X.L.rows() == n && X.r.size() == n;
+  const bool is_finite = X.c.allFinite() && X.L.allFinite() && X.r.allFinite();
+  if (!fits || !is_finite || (X.r.array() < 0).any()) archive.refuse("no ellipsoid");
+}
+
+void serialize(Given& X, Index n, Archive& archive) {
+  bool has_around = X.around.has_value();
+  archive(X.form, has_around);
+  if (X.form.dim() != n || X.form.lines() > 0) archive.refuse("a set that no ellipsoid is around");
+  if (!has_around) return;
+  if (!X.around) X.around.emplace();
+  serialize(*X.around, n, archive);
+}
+
 /// Puts coordinates elsewhere, each at one place at most: nothing is rounded, and no two add up.
 bool only_places(MatrixIn T, std::vector<bool>& taken) {
   for (Index i = 0; i < T.rows(); ++i) {
@@ -88,6 +104,15 @@ struct Ellipsoids {
   }
   /// What was imported is held as it is; an ellipsoid is not of the form.
   bool has_exact_form(const Value& X) const { return !X.ellipsoid(); }
+  void serialize(Value& X, Archive& archive) const {
+    auto kind = static_cast<Index>(X.set.index());
+    archive(X.n, kind);
+    if (X.n < 0 || kind < 0 || kind > 2) archive.refuse("a set of no kind");
+    if (archive.is_reading() && kind == 1) X.set = Given{};
+    if (archive.is_reading() && kind == 2) X.set = Ellipsoid{};
+    if (auto* given = std::get_if<Given>(&X.set)) ::serialize(*given, X.n, archive);
+    if (auto* ellipsoid = std::get_if<Ellipsoid>(&X.set)) ::serialize(*ellipsoid, X.n, archive);
+  }
   Complexity complexity(const Value& X) const {
     if (const Given* given = X.given())
       return {given->form.generators(), 0, given->form.constraints()};

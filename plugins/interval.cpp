@@ -161,6 +161,10 @@ struct Intervals {
   std::optional<Volume> volume(const Box& X) const {
     return Volume{(X.upper - X.lower).prod(), true};
   }
+  void serialize(Box& X, Archive& archive) const {
+    archive(X);
+    if (X.lower.hasNaN() || X.upper.hasNaN()) archive.refuse("a box with NaN for a bound");
+  }
 
   Result import(const LineForm& X) const {
     if (outward) {

@@ -51,6 +51,16 @@ struct Zonotopes {
   LineForm line_form(const Value& X) const {
     return X.Z ? make_zonotope(X.Z->c, X.Z->G) : make_empty(X.n);
   }
+  void serialize(Value& X, Archive& archive) const {
+    bool there = X.Z.has_value();
+    archive(X.n, there);
+    if (X.n < 0) archive.refuse("a set of negative dimension");
+    if (!there) return;
+    if (!X.Z) X.Z.emplace();
+    archive(X.Z->c, X.Z->G);
+    const bool fits = X.Z->c.size() == X.n && X.Z->G.rows() == X.n;
+    if (!fits || !X.Z->c.allFinite() || !X.Z->G.allFinite()) archive.refuse("no zonotope");
+  }
   Complexity complexity(const Value& X) const { return {X.Z ? X.Z->generators() : 0, 0, 0}; }
   Answer is_empty(const Value& X, Certificate* why) const {
     if (why) *why = {Certificate::Kind::structure, Vector(0), 0};

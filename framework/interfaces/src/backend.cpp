@@ -227,6 +227,21 @@ Enclosure SetBackend::convex_hull(const Enclosure& X, const Enclosure& Y) const 
                meet(own.tightness, other.tightness));
 }
 
+void SetBackend::serialize(SetPtr& X, Archive& archive) const {
+  if (X && &X->backend() != this)
+    throw Error(Errc::unsupported, "a set of another backend than " + info_.name +
+                                       " cannot be saved; import it first");
+  Made made{do_serialize(X.get(), archive)};
+  if (X) return;
+  if (!made.set)
+    throw Error(Errc::plugin, "backend " + info_.name + ": a saved set was read as none");
+  X = adopt(std::move(made), Tightness::exact).set;
+}
+
+std::unique_ptr<const Set> SetBackend::do_serialize(const Set*, Archive&) const {
+  throw Error(Errc::unsupported, "sets of the backend \"" + info_.name + "\" cannot be saved");
+}
+
 SetBackend::Made SetBackend::do_predict(const Set& X, const PredictionArgs& p) const {
   LineForm sum = cordon::affine_map(X.line_form(), p.A, p.f);
   bool exact = X.has_exact_form();

@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "cordon/core/error.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "sample_check.hpp"
 
 namespace cordon {
@@ -38,6 +40,21 @@ Diagnosis Diagnoser::step(const Sample& now) {
       std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
   before_ = now;
   return diagnosis;
+}
+
+void Diagnoser::serialize(Archive& archive) {
+  archive.section("diagnoser");
+  archive(before_, started_);
+  if (archive.is_reading()) do_start();
+  step_us_ = 0;
+  if (!before_) return;
+  if (archive.is_reading())
+    detail::check_sample(*before_, std::nullopt, bank_[bank_.nominal].model);
+  do_serialize(archive);
+}
+
+void Diagnoser::do_serialize(Archive&) {
+  throw Error(Errc::unsupported, "the state of this diagnoser cannot be saved");
 }
 
 }  // namespace cordon

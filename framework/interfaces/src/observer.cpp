@@ -7,6 +7,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/tolerances.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "region.hpp"
 #include "sample_check.hpp"
 
@@ -355,6 +356,25 @@ void Observer::replace(Enclosure X) {
   if (model_.region)
     left_region_ = detail::why_outside(*model_.region, X->interval_hull(), *before_);
   do_replace(X);
+}
+
+void Observer::serialize(Archive& archive) {
+  archive.section("observer");
+  archive(X0_, before_, begin_, held_, last_, inherited_, last_inherited_, inconsistent_,
+          is_cut_to_nothing_, outlier_times_, left_out_, contradiction_, left_region_);
+  times_ = {};
+  if (!before_) return;
+  const Index n = model_.states();
+  const auto fits = [n](const Enclosure& held) {  // the states of one time or of several
+    return held.set && held->dim() >= n && held->dim() % std::max<Index>(n, 1) == 0;
+  };
+  if (archive.is_reading()) detail::check_sample(*before_, std::nullopt, model_);
+  if (!fits(held_) || !fits(last_)) archive.refuse("a sample without an estimate of the states");
+  do_serialize(archive);
+}
+
+void Observer::do_serialize(Archive&) {
+  throw Error(Errc::unsupported, "the state of this observer cannot be saved");
 }
 
 }  // namespace cordon

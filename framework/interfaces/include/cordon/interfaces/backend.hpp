@@ -12,6 +12,8 @@
 
 namespace cordon {
 
+class Archive;  // archive.hpp
+
 /// What a backend can do. Observers choose their recursion by this, never by name.
 struct BackendInfo {
   std::string name;            ///< component name, e.g. "zonotope"
@@ -85,6 +87,11 @@ class SetBackend : public std::enable_shared_from_this<SetBackend> {
                          const Enclosure& Y) const;                     ///< {x ∈ X : R x ∈ Y}
   Enclosure convex_hull(const Enclosure& X, const Enclosure& Y) const;  ///< closure of conv(X ∪ Y)
 
+  /// Writes X, a set of this backend, to the archive, or reads it from there: with the same numbers
+  /// in it, so that every operation on it gives the same bits as before. Throws Errc::unsupported
+  /// if the backend does not offer it, Errc::invalid for what is no set of its own.
+  void serialize(SetPtr& X, Archive& archive) const;
+
  protected:
   explicit SetBackend(BackendInfo info) : info_(std::move(info)) {}
 
@@ -112,6 +119,8 @@ class SetBackend : public std::enable_shared_from_this<SetBackend> {
   virtual Made do_product(const Set& X, const Set& Y) const;
   /// Default: leaves X as it is (no set: "nothing to do").
   virtual Made do_reduce(const Set& X, Budget budget) const;
+  /// Writes X, or reads a set where X is null, and returns it. Default: Errc::unsupported.
+  virtual std::unique_ptr<const Set> do_serialize(const Set* X, Archive& archive) const;
 
   Enclosure adopt(Made made, Tightness inputs) const;
 

@@ -130,6 +130,9 @@ class Diagnoser {
   /// Throws Errc::unsupported for missing outputs that the diagnoser does not take.
   Diagnosis step(const Sample& now);
 
+  /// As Observer::serialize; the bank takes the place of the model.
+  void serialize(Archive& archive);
+
   /// What can be said before any experiment; nothing if the method has no such statements.
   std::optional<Guarantees> guarantees() const { return do_guarantees(); }
 
@@ -165,6 +168,9 @@ class Diagnoser {
   virtual std::optional<Guarantees> do_guarantees() const { return std::nullopt; }
   virtual std::optional<Index> do_last_used_sample() const { return std::nullopt; }
   virtual bool do_takes_missing_outputs() const { return false; }
+  /// The members that `do_start` and `do_step` change, once there has been a sample; `do_start` has
+  /// been called before they are read. Default: Errc::unsupported.
+  virtual void do_serialize(Archive& archive);
 
   ModeBank bank_;
   std::shared_ptr<const SetBackend> backend_;

@@ -71,6 +71,13 @@ class Observer {
   /// time, a second step at every sample.
   void leave_out_outliers(Index most, Index window);
 
+  /// Writes all that later steps depend on to the archive, or takes it from there. An observer that
+  /// is made with the same model, backend and parameters, and reads what this one has written,
+  /// takes every later sample as this one would, bit by bit; `times` are not kept. Throws
+  /// Errc::unsupported if the observer or its backend do not offer it, Errc::invalid for what does
+  /// not fit this observer, which has to begin anew then.
+  void serialize(Archive& archive);
+
   const PhaseTimes& times() const { return times_; }
   /// Of the last sample: outputs that were left out, in ascending order.
   const std::vector<Index>& left_out() const { return left_out_; }
@@ -169,6 +176,10 @@ class Observer {
   virtual Enclosure do_step(const Sample& before, const Sample& now) = 0;
   virtual void do_replace(const Enclosure& X) = 0;
   virtual std::optional<Box> do_inner_estimate() const { return std::nullopt; }
+  /// The members that `do_start`, `do_step` and `do_replace` change, without those that only keep
+  /// memory or what they can make again: `archive(x_, X_)`. Asked for once there has been a sample.
+  /// Default: Errc::unsupported.
+  virtual void do_serialize(Archive& archive);
 
   class Stopwatch {
    public:
