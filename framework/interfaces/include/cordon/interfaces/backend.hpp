@@ -105,6 +105,8 @@ class SetBackend : public std::enable_shared_from_this<SetBackend> {
   /// Default: inequalities become constraints with slack factors as far as the form bounds them
   /// (solvers/view_questions.hpp), and the others are left out.
   virtual Made do_import_view(const View& X) const;
+  /// Writes X, or reads a set where X is null, and returns it. Default: Errc::unsupported.
+  virtual std::unique_ptr<const Set> do_serialize(const Set* X, Archive& archive) const;
 
  private:
   virtual Made do_import(const LineForm& X) const = 0;
@@ -119,8 +121,6 @@ class SetBackend : public std::enable_shared_from_this<SetBackend> {
   virtual Made do_product(const Set& X, const Set& Y) const;
   /// Default: leaves X as it is (no set: "nothing to do").
   virtual Made do_reduce(const Set& X, Budget budget) const;
-  /// Writes X, or reads a set where X is null, and returns it. Default: Errc::unsupported.
-  virtual std::unique_ptr<const Set> do_serialize(const Set* X, Archive& archive) const;
 
   Enclosure adopt(Made made, Tightness inputs) const;
 
