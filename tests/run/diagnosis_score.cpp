@@ -8,6 +8,7 @@ using namespace cordon;
 using detail::DiagnosisScore;
 using detail::DiagnosisTally;
 using detail::DiagnosisTimeline;
+using detail::TruthTimeline;
 
 namespace {
 
@@ -46,6 +47,7 @@ Result play(Index steps, const std::vector<True>& truths, const std::vector<Says
     result.segments.push_back(segment);
     tally.add(segment);
   });
+  TruthTimeline truth_timeline;
   DiagnosisTimeline timeline;
   std::size_t at_truth = 0, at = 0;
   for (Index k = 0; k < steps; ++k) {
@@ -64,8 +66,9 @@ Result play(Index steps, const std::vector<True>& truths, const std::vector<Says
         now.modes[static_cast<std::size_t>(j)].consistent = Answer::no;
     }
     const std::optional<Index> truth = truths.empty() ? std::nullopt : truths[at_truth].mode;
-    timeline.step(truth, now,
-                  [&](DiagnosisEvent event) { result.events.push_back(std::move(event)); });
+    const auto tell = [&](DiagnosisEvent event) { result.events.push_back(std::move(event)); };
+    truth_timeline.step(k, truth, tell);
+    timeline.step(now, tell);
     score.step(truth, now);
   }
   score.finish();

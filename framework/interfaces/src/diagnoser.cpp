@@ -5,7 +5,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/interfaces/archive.hpp"
-#include "sample_check.hpp"
+#include "interfaces/sample_check.hpp"
 
 namespace cordon {
 
@@ -31,7 +31,8 @@ void Diagnoser::start() {
 }
 
 Diagnosis Diagnoser::step(const Sample& now) {
-  detail::check_sample(now, before_, bank_[bank_.nominal].model);
+  detail::check_sample(now, before_ ? std::optional(before_->k) : std::nullopt,
+                       bank_[bank_.nominal].model);
   if (!now.is_complete() && !takes_missing_outputs()) detail::refuse_missing(now, "diagnoser");
   if (!started_) start();
   const auto begin = std::chrono::steady_clock::now();

@@ -8,8 +8,8 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "cordon/interfaces/archive.hpp"
+#include "interfaces/sample_check.hpp"
 #include "region.hpp"
-#include "sample_check.hpp"
 
 namespace cordon {
 
@@ -295,7 +295,7 @@ void Observer::explain(const Sample& now) {
 }
 
 Estimate Observer::step(const Sample& now) {
-  detail::check_sample(now, before_, model_);
+  detail::check_sample(now, before_ ? std::optional(before_->k) : std::nullopt, model_);
   if (!now.is_complete() && !takes_missing_outputs()) detail::refuse_missing(now, "observer");
   times_ = {};
   left_out_.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sample_check.hpp"
+#include "interfaces/sample_check.hpp"
 
 #include <cmath>
 
@@ -24,7 +24,7 @@ void check_missing(const Sample& sample) {
 
 }  // namespace
 
-void check_sample(const Sample& sample, const std::optional<Sample>& before, const Model& model) {
+void check_sample(const Sample& sample, std::optional<Index> before, const Model& model) {
   if (sample.u.size() != model.inputs() || sample.y.size() != model.outputs()) {
     throw Error(Errc::dimension,
                 "sample " + std::to_string(sample.k) + " has " + std::to_string(sample.u.size()) +
@@ -38,9 +38,9 @@ void check_sample(const Sample& sample, const std::optional<Sample>& before, con
     throw Error(Errc::not_finite,
                 "sample " + std::to_string(sample.k) + " has a NaN or infinite value");
   }
-  if (before && sample.k != before->k + 1) {
+  if (before && sample.k != *before + 1) {
     throw Error(Errc::invalid, "sample " + std::to_string(sample.k) + " follows sample " +
-                                   std::to_string(before->k) +
+                                   std::to_string(*before) +
                                    "; samples come one time after another");
   }
 }

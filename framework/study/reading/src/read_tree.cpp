@@ -58,8 +58,8 @@ SystemPart TreeReader::read_known_system(const Cursor& at) {
 }
 
 void TreeReader::read_sections() {
-  const std::vector<std::string> keys{"cordon", "title",     "plugins", "system",
-                                      "data",   "pipelines", "metrics", "sweep"};
+  const std::vector<std::string> keys{"cordon",    "title",   "plugins", "system", "data",
+                                      "pipelines", "metrics", "online",  "sweep"};
   if (!root_.expect_keys(keys, "key of a study",
                          "a study is an object: {\"cordon\": 1, \"system\": ..., \"data\": ..., "
                          "\"pipelines\": ...}"))
@@ -92,6 +92,7 @@ void TreeReader::read_sections() {
     });
   }
   if (const auto at = root_.find("metrics")) study.metrics = read_metrics(*at, system, context);
+  if (const auto at = root_.find("online")) study.online = read_online(*at);
   study.model = std::move(system.model);
   study.nominal = std::move(system.nominal);
   study.modes = std::move(system.modes);

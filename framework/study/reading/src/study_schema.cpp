@@ -316,6 +316,27 @@ Json sweep() {
   return {{"type", "array"}, {"items", axis}, {"minItems", 1}, {"maxItems", 100}};
 }
 
+Json online() {
+  const auto choice = [](const char* first, const char* second) {
+    return Json{{"enum", {first, second}}, {"default", first}};
+  };
+  Json properties;
+  properties["jumps"] = described(choice("refuse", "fill"),
+                                  "times that are left out: refused, or taken without outputs");
+  properties["longest_gap"] =
+      described(Json{{"type", "integer"}, {"minimum", 1}, {"default", 1000}},
+                "times that are filled at most");
+  properties["late"] = described(choice("drop", "correct"),
+                                 "outputs of times that have passed: left out, or the past is "
+                                 "taken again with them");
+  properties["lag"] =
+      described(Json{{"type", "integer"}, {"minimum", 1}, {"maximum", 10'000}, {"default", 10}},
+                "samples that late outputs may lie behind the last one");
+  properties["repeated"] = described(choice("refuse", "ignore"),
+                                     "a sample that brings nothing new: an error, or left out");
+  return object(properties, {});
+}
+
 Json with_simulate(Json properties, const std::vector<std::string>& required) {
   Json simulate{{"properties", std::move(properties)}};
   if (!required.empty()) simulate["required"] = required;
@@ -352,6 +373,8 @@ std::string study_json_schema(const Registry& registry) {
   properties["pipelines"] = {
       {"type", "array"}, {"items", reference("pipeline")}, {"minItems", 1}, {"maxItems", 1000}};
   properties["metrics"] = list_of(reference("metric"));
+  properties["online"] =
+      described(online(), "what becomes of samples out of order (cordon stream)");
   properties["sweep"] = described(sweep(), "the study is run under all combinations of the values");
   Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Cordon study"}};
   root.update(object(properties, {"cordon", "system", "pipelines"}));

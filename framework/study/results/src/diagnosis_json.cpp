@@ -24,24 +24,6 @@ void write(JsonWriter& json, const JudgedBound& judged) {
   json.end_object();
 }
 
-void write(JsonWriter& json, const DiagnosisEvent& event, const Names& modes) {
-  using Kind = DiagnosisEvent::Kind;
-  json.begin_object().member("k", event.k).member("what", to_string(event.what));
-  write_mode(json, "mode", modes, event.mode);
-  if (event.what == Kind::detected || event.what == Kind::excluded ||
-      event.what == Kind::left_open) {
-    json.key("evidence");
-    write(json, event.evidence);
-  }
-  if (event.estimate.dim() > 0) write_box(json, "estimate", event.estimate);
-  if (!event.faults.empty()) {
-    json.key("faults").begin_array();
-    for (const FaultBound& bound : event.faults) write(json, JudgedBound{bound, {}});
-    json.end_array();
-  }
-  json.end_object();
-}
-
 void write(JsonWriter& json, const DiagnosisSegment& segment, const Names& modes) {
   json.begin_object();
   write_mode(json, "mode", modes, segment.mode);
@@ -126,6 +108,24 @@ void write_scores(JsonWriter& json, const DiagnosisOutcome& outcome) {
 }
 
 }  // namespace
+
+void write(JsonWriter& json, const DiagnosisEvent& event, const Names& modes) {
+  using Kind = DiagnosisEvent::Kind;
+  json.begin_object().member("k", event.k).member("what", to_string(event.what));
+  write_mode(json, "mode", modes, event.mode);
+  if (event.what == Kind::detected || event.what == Kind::excluded ||
+      event.what == Kind::left_open) {
+    json.key("evidence");
+    write(json, event.evidence);
+  }
+  if (event.estimate.dim() > 0) write_box(json, "estimate", event.estimate);
+  if (!event.faults.empty()) {
+    json.key("faults").begin_array();
+    for (const FaultBound& bound : event.faults) write(json, JudgedBound{bound, {}});
+    json.end_array();
+  }
+  json.end_object();
+}
 
 void write_mode(JsonWriter& json, std::string_view key, const Names& modes, Index mode) {
   json.key(key);

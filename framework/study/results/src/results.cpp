@@ -8,9 +8,9 @@
 #include "results_design.hpp"
 #include "results_diagnosis.hpp"
 #include "study/results/file_heads.hpp"
-#include "study/results/recorded_view.hpp"
 #include "study/results/results_parts.hpp"
 #include "study/results/sets_file.hpp"
+#include "study/results/step_json.hpp"
 #include "study/results/table_builder.hpp"
 #include "study/text/host.hpp"
 #include "study/text/numbers.hpp"
@@ -246,12 +246,8 @@ void Results::check_columns(const MetricValues& metrics) {
 
 void Results::estimate(const StepResult& result) {
   const Estimate& estimate = result.estimate;
-  results_.begin_object().member("k", estimate.k);
-  write_box(results_, "hull", result.hull);
-  if (result.inner) write_box(results_, "inner", *result.inner);
-  if (!result.left_out.empty()) write_outputs(results_, "left_out", result.left_out);
-  results_.member("consistent", to_string(estimate.consistent))
-      .member("tightness", to_string(estimate.set.tightness));
+  results_.begin_object();
+  write_members(results_, estimate, result.hull, result.inner, result.left_out);
   for (const MetricValue& metric : result.metrics.reproducible) write(results_, metric);
   results_.end_object();
   run_.begin_object().member("k", estimate.k).key("time_us");
@@ -301,26 +297,7 @@ void Results::write_row(const StepResult& result) {
 
 void Results::write_set(const StepResult& result) {
   if (sets_->kept() == KeptSets::none) return;
-  const Estimate& estimate = result.estimate;
-  const View X = recorded_view(*estimate.set, result.hull);
-  StringSink line;
-  JsonWriter json(line);
-  json.begin_object().key("pipeline").raw(pipeline_json_).member("k", estimate.k);
-  json.member("tightness", to_string(estimate.set.tightness));
-  json.member("exchange", to_string(X.claim));
-  write_blocks(json, X.form);
-  if (X.rows.rows() > 0) json.key("H").matrix(X.rows.H).member("h", X.rows.h);
-  json.member("consistent", to_string(estimate.consistent));
-  json.key("proof");
-  write(json, estimate.why);
-  if (estimate.consistent != Answer::no) {
-    json.key("hull_proofs").begin_array();
-    for (const Certificate& proof : result.hull_proofs) write(json, proof);
-    json.end_array();
-  }
-  json.end_object();
-  line.write("\n");
-  sets_->write(std::move(line.text));
+  sets_->write(set_json(result.estimate, result.hull, result.hull_proofs, pipeline_json_) + "\n");
 }
 
 void Results::end_estimation(const PipelineOutcome& outcome, const MetricValues& summary) {

@@ -115,7 +115,7 @@ class DesignRun final : public PipelineRun {
         context_.limit.check(outcome_.steps);
         check_->step(*record);
         last = diagnoser_->step(record->sample);
-        check_fits(*last, bank_, found_.diagnoser);
+        check_fits(*last, bank_.modes.size(), found_.diagnoser);
         if (last->reset && last->restarts.empty()) check_->restarted();
         shown.row(record->sample.k) = record->sample.y.transpose();
         score.step(mode_, *last);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <limits>
 
+#include "cordon/study/session.hpp"
 #include "pipeline_run.hpp"
 #include "study/checks/assumption_check.hpp"
 #include "study/results/quantiles.hpp"
@@ -40,10 +41,9 @@ class DiagnosisRun final : public PipelineRun {
 
  private:
   void make() override {
-    diagnoser_ = context_.registry.make<DiagnoserEntry>(diagnoser_spec_.type, {bank_, backend()},
-                                                        diagnoser_spec_.params);
-    found_.guarantees = diagnoser_->guarantees();
-    found_.assumptions = diagnoser_->assumptions();
+    session_.emplace(context_.study, context_.registry, index_, backend());
+    found_.guarantees = session_->diagnoser()->guarantees();
+    found_.assumptions = session_->diagnoser()->assumptions();
     PipelineAssumptions assumed = assumptions_of(diagnoser_spec_, rounding());
     const auto* const entry = context_.registry.entry<DiagnoserEntry>(diagnoser_spec_.type);
     using Modes = PipelineAssumptions::Modes;
@@ -73,41 +73,38 @@ class DiagnosisRun final : public PipelineRun {
     total_ = seeds_ * data_->size().value_or(0);
     check_->begin_run(seed_offset_);
     fault_score_.begin_run(seed_offset_);
-    timeline_.emplace();
+    truths_ = {};
     score_.emplace([this](const DiagnosisSegment& segment) {
       tally_.add(segment);
       if (seed_offset_ == 0) keep(found_.segments, segment);
     });
-    guarded([&] { diagnoser_->start(); });
+    guarded([&] { session_->start(); });
   }
 
   void diagnose(const Record& record) {
-    std::optional<Diagnosis> diagnosis;
+    DiagnosisStep step;
     std::vector<JudgedBound> faults;
     guarded([&] {
       check_->step(record);
-      diagnosis = diagnoser_->step(record.sample);
-      check_fits(*diagnosis, bank_, found_.diagnoser);
-      faults = fault_score_.step(record.fault, *diagnosis, record.sample.k < first_other_fault_);
+      step = std::move(*session_->step(record.sample).diagnosis);
+      faults =
+          fault_score_.step(record.fault, step.diagnosis, record.sample.k < first_other_fault_);
     });
     if (failed()) return;
+    const Diagnosis& diagnosis = step.diagnosis;
     if (found_.steps == 0 && record.mode) found_.truth_known = true;
-    score_->step(record.mode, *diagnosis);
-    if (diagnosis->reset) check_restart(*diagnosis, record.mode);
+    score_->step(record.mode, diagnosis);
+    if (diagnosis.reset) check_restart(diagnosis, record.mode);
     if (Results* const results = writer())
-      results->diagnosis({*diagnosis, record.mode, faults, diagnoser_->step_us()});
+      results->diagnosis({diagnosis, record.mode, faults, step.step_us});
     ++found_.steps;
-    if (seed_offset_ == 0) {
-      ++outcome_.steps;
-      timeline_->step(record.mode, *diagnosis, [&](DiagnosisEvent event) {
-        using What = DiagnosisEvent::Kind;
-        if (event.what == What::isolated || event.what == What::resumed)
-          event.estimate = hull_of(diagnosis->estimate);
-        keep(found_.events, std::move(event));
-      });
-      monitored_ = std::move(*diagnosis);
-    }
-    step_us_.add(diagnoser_->step_us());
+    step_us_.add(step.step_us);
+    if (seed_offset_ > 0) return;
+    ++outcome_.steps;
+    truths_.step(diagnosis.k, record.mode,
+                 [&](DiagnosisEvent event) { keep(found_.events, std::move(event)); });
+    for (DiagnosisEvent& event : step.events) keep(found_.events, std::move(event));
+    monitored_ = std::move(step.diagnosis);
   }
 
   /// Sets that the diagnoser tells hold the state if the mode has changed once.
@@ -201,8 +198,8 @@ class DiagnosisRun final : public PipelineRun {
   std::int64_t seeds_, seed_offset_ = 0;
   std::unique_ptr<DataSource> data_;  ///< of the run that is under way
   std::int64_t total_ = 0;
-  std::shared_ptr<Diagnoser> diagnoser_;
-  std::optional<DiagnosisTimeline> timeline_;
+  std::optional<Session> session_;
+  TruthTimeline truths_;
   std::optional<DiagnosisScore> score_;
   DiagnosisTally tally_;
   FaultScore fault_score_;
@@ -218,16 +215,6 @@ class DiagnosisRun final : public PipelineRun {
 std::int64_t seeds_of(const Study& study) {
   const auto* simulate = std::get_if<SimulateSpec>(&study.data);
   return simulate ? std::max<std::int64_t>(1, simulate->seeds) : 1;
-}
-
-void check_fits(const Diagnosis& diagnosis, const ModeBank& bank, const std::string& diagnoser) {
-  const bool mode_fits = diagnosis.decision == Decision::monitoring
-                             ? diagnosis.mode >= 0 && diagnosis.mode < bank.size()
-                             : diagnosis.mode == -1;
-  if (static_cast<Index>(diagnosis.modes.size()) == bank.size() && mode_fits) return;
-  throw Error(Errc::plugin, "the diagnoser \"" + diagnoser +
-                                "\" gave a diagnosis that does not fit its bank at k = " +
-                                std::to_string(diagnosis.k));
 }
 
 std::unique_ptr<PipelineRun> diagnosis_run(const RunContext& context, std::size_t index) {

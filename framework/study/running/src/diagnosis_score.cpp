@@ -2,7 +2,6 @@
 #include "study/running/diagnosis_score.hpp"
 
 #include <algorithm>
-#include <iterator>
 
 namespace cordon::detail {
 
@@ -10,13 +9,6 @@ namespace {
 
 void first_at(Index& time, Index k) {
   if (time < 0) time = k;
-}
-
-std::vector<FaultBound> without_0(const std::vector<FaultBound>& bounds) {
-  std::vector<FaultBound> found;
-  std::copy_if(bounds.begin(), bounds.end(), std::back_inserter(found),
-               [](const FaultBound& bound) { return bound.lower > 0 || bound.upper < 0; });
-  return found;
 }
 
 /// The time from which on the exclusions of this step speak. Bounds of additive faults speak of a
@@ -27,19 +19,7 @@ Index since_of(const Diagnosis& now) {
   return since;
 }
 
-/// In a bank of one mode nothing is excluded when that mode is monitored again.
-bool names_modes(const Diagnosis& now) { return now.modes.size() > 1; }
-
 }  // namespace
-
-DiagnosisBefore::DiagnosisBefore(const Diagnosis& diagnosis)
-    : decision(diagnosis.decision), mode(diagnosis.mode) {
-  for (const ModeEvidence& evidence : diagnosis.modes) candidate.push_back(evidence.candidate);
-}
-
-bool DiagnosisBefore::is_given_up_in(const Diagnosis& now) const {
-  return monitors() && (now.reset || now.decision != Decision::monitoring || now.mode != mode);
-}
 
 void DiagnosisScore::step(const std::optional<Index>& truth, const Diagnosis& now) {
   follow(truth, now);
@@ -100,76 +80,6 @@ void DiagnosisScore::judge_exclusions(const Diagnosis& now) {
     if (!dropped && now.modes[j].consistent != Answer::no) continue;
     if (throughout(mode, since)) excluded_ = {now.k, since, mode, 0};
   }
-}
-
-void DiagnosisTimeline::step(const std::optional<Index>& truth, const Diagnosis& now,
-                             const std::function<void(DiagnosisEvent)>& tell) {
-  using Kind = DiagnosisEvent::Kind;
-  if (truth && truth_ != truth) tell({now.k, Kind::truth, *truth, {}});
-  truth_ = truth;
-  if (!before_) {
-    tell({now.k, Kind::starts, now.mode, {}});
-    tell_left_open(now, tell);
-    before_.emplace(now);
-    return;
-  }
-  exclusions(now, tell);
-  tell_left_open(now, tell);
-  const bool given_up = before_->is_given_up_in(now);
-  if (given_up || now.decision != before_->decision) {
-    switch (now.decision) {
-      case Decision::monitoring:
-        tell({now.k, names_modes(now) ? Kind::isolated : Kind::resumed, now.mode, {}});
-        break;
-      case Decision::isolating:
-        if (!given_up) tell({now.k, Kind::isolating, -1, {}});  // else it is what `detected` says
-        break;
-      case Decision::ambiguous:
-        tell({now.k, Kind::ambiguous, -1, {}});
-        break;
-      case Decision::unknown_fault:
-        tell({now.k, Kind::unknown_fault, -1, {}});
-        break;
-    }
-  }
-  before_.emplace(now);
-}
-
-void DiagnosisTimeline::tell_left_open(const Diagnosis& now,
-                                       const std::function<void(DiagnosisEvent)>& tell) {
-  if (now.reset) left_open_.clear();
-  left_open_.resize(std::max(left_open_.size(), now.modes.size()));
-  for (std::size_t j = 0; j < now.modes.size(); ++j) {
-    const bool is_open = !now.reset && !now.modes[j].left_open.empty();
-    if (is_open && !left_open_[j])
-      tell({now.k, DiagnosisEvent::Kind::left_open, static_cast<Index>(j), now.modes[j]});
-    left_open_[j] = is_open;
-  }
-}
-
-void DiagnosisTimeline::exclusions(const Diagnosis& now,
-                                   const std::function<void(DiagnosisEvent)>& tell) {
-  using Kind = DiagnosisEvent::Kind;
-  const bool given_up = before_->is_given_up_in(now);
-  if (given_up) {
-    const auto j = static_cast<std::size_t>(before_->mode);
-    tell({now.k, Kind::detected, before_->mode,
-          j < now.modes.size() ? now.modes[j] : ModeEvidence{}, without_0(now.faults)});
-  }
-  // outside the bank all modes are excluded again and again: told only if they lead elsewhere
-  const bool was_outside = before_->decision == Decision::unknown_fault,
-             is_outside = now.decision == Decision::unknown_fault;
-  if (was_outside && now.reset) untold_.clear();
-  for (std::size_t j = 0; j < now.modes.size(); ++j) {
-    if (given_up && static_cast<Index>(j) == before_->mode) continue;
-    // after a reset all modes are candidates again: what it rests on is told by the evidence
-    const bool gone = now.reset ? now.modes[j].consistent == Answer::no : !now.modes[j].candidate;
-    if (gone && before_->candidate[j])
-      untold_.push_back({now.k, Kind::excluded, static_cast<Index>(j), now.modes[j]});
-  }
-  if (was_outside && is_outside) return;
-  for (DiagnosisEvent& event : untold_) tell(std::move(event));
-  untold_.clear();
 }
 
 void DiagnosisTally::add(const DiagnosisSegment& segment) {

@@ -4,6 +4,7 @@
 #include <deque>
 
 #include "cordon/core/tolerances.hpp"
+#include "cordon/study/session.hpp"
 #include "host_checks.hpp"
 #include "pipeline_run.hpp"
 #include "study/checks/assumption_check.hpp"
@@ -40,11 +41,10 @@ class EstimationRun final : public PipelineRun {
  public:
   EstimationRun(const RunContext& context, std::size_t index)
       : PipelineRun(context, index),
-        observer_spec_(spec_.estimation()->observer),
         own_model_(is_own_model(context.study)),
         data_(context.open(0)),
         total_(data_->size().value_or(0)) {
-    found_.observer = observer_spec_.type;
+    found_.observer = spec_.estimation()->observer.type;
   }
 
   std::int64_t done() const override { return samples_; }
@@ -52,23 +52,22 @@ class EstimationRun final : public PipelineRun {
 
  private:
   void make() override {
-    observer_ = context_.registry.make<ObserverEntry>(
-        observer_spec_.type, {context_.study.model, backend()}, observer_spec_.params);
-    board_.emplace(context_.study.metrics, context_.registry);
+    session_.emplace(context_.study, context_.registry, index_, backend());
+    session_->prove_hulls(context_.results != nullptr);
+    const Observer& observer = *session_->observer();
     const EstimationSpec& spec = *spec_.estimation();
-    observer_->leave_out_outliers(spec.outliers, spec.outlier_window);
-    observer_->start();
-    assumptions_ = {observer_->initial_set(), std::nullopt, observer_->follows_its_sets()};
-    assumptions_->admissible_set = observer_->admissible_set();
-    assumptions_->lag = found_.lag = observer_->lag();
+    assumptions_ = {observer.initial_set(), std::nullopt, observer.follows_its_sets()};
+    assumptions_->admissible_set = observer.admissible_set();
+    assumptions_->lag = found_.lag = observer.lag();
     PipelineAssumptions assumed{.initial_set = assumptions_->initial_set,
                                 .exact_data = rounding() != Rounding::nominal};
     if (restarts()) assumptions_->restart_set = spec.restart_set;
     if (assumptions_->admissible_set)
       assumed.admissible_sets.push_back({*assumptions_->admissible_set, 0});
+    board_.emplace(context_.study.metrics, context_.registry);
     check_.emplace(context_.study, std::move(assumed));
     rounding_.emplace(context_.study.model, assumptions_->initial_set, *rounding());
-    found_.gains = observer_->gains();
+    found_.gains = observer.gains();
   }
 
   void written_begin() override {
@@ -87,91 +86,72 @@ class EstimationRun final : public PipelineRun {
 
   bool restarts() const { return spec_.estimation()->on_empty == OnEmpty::restart; }
 
-  /// From now on nothing is known of what was before but that the state is in the set.
-  void begin_anew(Index k, const LineForm& set) {
+  /// The observer has begun anew: of what was before nothing is known but that the state is in the
+  /// set.
+  void begun_anew(Index k, const LineForm& set) {
     since_ = k;
-    observer_->start(backend()->import(set));
     rounding_.emplace(context_.study.model, set, *rounding());
     before_.reset();
     passed_.clear();
     growth_ = {};
   }
 
-  Estimate step(const Sample& sample, bool anew) {
-    if (anew) {
-      begin_anew(sample.k, spec_.estimation()->restart_set);
+  void count_beginnings(Index k, const EstimateStep& step) {
+    if (step.restarted) {
+      begun_anew(k, spec_.estimation()->restart_set);
       ++found_.restarts;
     }
-    try {
-      return observer_->step(sample);
-    } catch (const Error& error) {
-      const bool goes_on = spec_.estimation()->on_not_enclosed == OnNotEnclosed::restart;
-      if (error.code() != Errc::not_enclosed || !goes_on) throw;
-      if (found_.not_enclosed++ == 0) {
-        found_.not_enclosed_from = sample.k;
-        found_.why_not_enclosed = error.what();
-      }
-    }
-    begin_anew(sample.k, assumptions_->admissible_set.value());
-    return observer_->step(sample);
+    if (step.not_enclosed.empty()) return;
+    begun_anew(k, assumptions_->admissible_set.value());
+    if (found_.not_enclosed++ > 0) return;
+    found_.not_enclosed_from = k;
+    found_.why_not_enclosed = step.not_enclosed;
   }
 
   /// What was left out of the sample, or contradicts what was known.
-  void tell_contradiction(const Record& record) {
-    const std::optional<Contradiction>& contradiction = observer_->contradiction();
-    if (!contradiction) return;
-    if (observer_->left_out().empty()) {
-      if (found_.inconsistent_from < 0) found_.contradiction = contradiction;
+  void tell_contradiction(const Record& record, const EstimateStep& step) {
+    if (!step.contradiction) return;
+    if (step.left_out.empty()) {
+      if (found_.inconsistent_from < 0) found_.contradiction = step.contradiction;
       return;
     }
     ++found_.outliers;
     if (found_.left_out.size() < most_left_out)
-      found_.left_out.push_back({*contradiction, observer_->left_out()});
+      found_.left_out.push_back({*step.contradiction, step.left_out});
     seen_ = record;
-    seen_->sample = missing_outputs(std::move(seen_->sample), observer_->left_out());
+    seen_->sample = missing_outputs(std::move(seen_->sample), step.left_out);
   }
 
   void estimate(const Record& given) {
     Results* const results = context_.results;
-    std::optional<Estimate> estimate;
-    Box hull;
-    std::optional<Box> inner;
+    EstimateStep step;
     const MetricValues* values = nullptr;
-    double hull_us = 0;
-    bool is_told = false;
     nominal_ = nominal_ && given.mode.value_or(nominal_mode) == nominal_mode;
-    const bool anew = restarts() && was_empty_;
     seen_.reset();
     guarded([&] {
-      estimate = step(given.sample, anew);
-      tell_contradiction(given);
+      step = std::move(*session_->step(given.sample).estimate);
+      count_beginnings(given.sample.k, step);
+      tell_contradiction(given, step);
       const Record& record = seen_ ? *seen_ : given;
-      was_empty_ = estimate->consistent == Answer::no;
-      take(record, anew);
-      is_told = is_last_of_its_time(*estimate, record.sample.k);
-      if (!is_told) return;
-      told_ = estimate->k;
-      const Clock::time_point begin = Clock::now();
-      hull = estimate->consistent == Answer::no
-                 ? Box::empty(estimate->set->dim())
-                 : estimate->set->interval_hull(results ? &hull_proofs_ : nullptr);
-      hull_us = seconds_since(begin) * 1e6;
-      inner = observer_->inner_estimate();
-      if (inner) inner_.step(estimate->k, *inner, hull);
-      const Vector* truth = judge(record.sample.k, *estimate);
+      is_empty_ = step.estimate.consistent == Answer::no;
+      take(record, step.restarted);
+      if (!step.is_last) return;
+      if (step.inner) inner_.step(step.estimate.k, *step.inner, step.hull);
+      const Vector* truth = judge(record.sample.k, step.estimate);
       const bool assumptions_hold = nominal_ && !check_->excuses(record.sample.k, since_);
-      values = &board_->step({*estimate, hull, truth, assumptions_hold, observer_->times()});
+      values = &board_->step({step.estimate, step.hull, truth, assumptions_hold, step.times});
       if (results) results->check_columns(*values);
     });
-    if (failed() || !is_told) return;
-    if (found_.inconsistent_from < 0 || (restarts() && !was_empty_))
-      phases_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
-    count(*estimate, hull);
+    if (failed() || !step.is_last) return;
+    if (found_.inconsistent_from < 0 || (restarts() && !is_empty_))
+      phases_.add(step.times, step.hull_us);  // ∅ stays ∅ without any work
+    count(step.estimate, step.hull);
     if (results)
-      results->estimate({*estimate, hull, hull_proofs_, inner, *values, observer_->times(), hull_us,
-                         found_.lag > 0 ? nothing_left_out_ : observer_->left_out()});
-    growth_.step(estimate->k, hull);
-    found_.last_hull = std::move(hull);
+      results->estimate({step.estimate, step.hull, step.hull_proofs, step.inner, *values,
+                         step.times, step.hull_us,
+                         found_.lag > 0 ? nothing_left_out_ : step.left_out});
+    growth_.step(step.estimate.k, step.hull);
+    found_.last_hull = std::move(step.hull);
   }
 
   void conclude() override {
@@ -191,13 +171,6 @@ class EstimationRun final : public PipelineRun {
     if (inner_.steps() > 0) found_.inner_share = inner_.share();
     outcome_.task = std::move(found_);
     if (context_.results) context_.results->end_estimation(outcome_, summary);
-  }
-
-  /// Of observers that lag, several samples give an estimate of their first time, the last of which
-  /// is told of. One that is proven empty already is told of at once.
-  bool is_last_of_its_time(const Estimate& estimate, Index k) const {
-    const bool is_last = k - estimate.k >= found_.lag || estimate.consistent == Answer::no;
-    return is_last && estimate.k > told_;
   }
 
   /// Looks at the assumptions, and keeps the truth until its estimate comes.
@@ -273,17 +246,15 @@ class EstimationRun final : public PipelineRun {
     }
   }
 
-  const ComponentSpec& observer_spec_;
   bool own_model_;
   Index since_ = 0;  ///< the observer has begun anew
-  Index told_ = -1;  ///< time of the last estimate that was told of
   std::int64_t samples_ = 0;
-  bool was_empty_ = false;      ///< the last estimate
+  bool is_empty_ = false;       ///< the estimate
   std::optional<Record> seen_;  ///< the record without what was left out
   bool nominal_ = true;         ///< the plant has had no fault so far, as far as the data tell
   std::unique_ptr<DataSource> data_;
   std::int64_t total_;
-  std::shared_ptr<Observer> observer_;
+  std::optional<Session> session_;
   std::optional<Assumptions> assumptions_;
   std::optional<AssumptionCheck> check_;
   std::optional<MetricBoard> board_;
@@ -294,7 +265,6 @@ class EstimationRun final : public PipelineRun {
   std::deque<Passed> passed_;     ///< whose estimate is still to come, or has just come
   std::optional<Sample> before_;  ///< the sample before these
   std::optional<RoundingMargin> rounding_;
-  std::vector<Certificate> hull_proofs_;
   const std::vector<Index> nothing_left_out_ = {};
   Phases phases_;
   InnerCheck inner_;

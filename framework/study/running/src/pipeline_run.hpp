@@ -101,7 +101,4 @@ std::unique_ptr<PipelineRun> design_run(const RunContext& context, std::size_t i
 /// How many seeds diagnosers are tried on.
 std::int64_t seeds_of(const Study& study);
 
-/// What the program relies on in a diagnosis. Throws Errc::plugin.
-void check_fits(const Diagnosis& diagnosis, const ModeBank& bank, const std::string& diagnoser);
-
 }  // namespace cordon::detail

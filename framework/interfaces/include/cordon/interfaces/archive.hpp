@@ -90,8 +90,9 @@ class Archive {
   requires(std::integral<Number> && !std::same_as<Number, bool>) void one(Number& value) {
     auto number = static_cast<std::int64_t>(value);
     integer(number);
-    if (!std::in_range<Number>(number)) refuse("a number that is too large");
     value = static_cast<Number>(number);
+    const bool fits = static_cast<std::int64_t>(value) == number;
+    if (!fits || (std::is_unsigned_v<Number> && number < 0)) refuse("a number out of range");
   }
   template <class T>
   void one(std::optional<T>& value) {

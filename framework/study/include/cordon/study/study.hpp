@@ -181,6 +181,33 @@ struct PipelineSpec : PipelineTask<EstimationSpec, DiagnosisSpec, DesignSpec> {
 /// observer, diagnoser, or designer and perhaps diagnoser.
 std::vector<std::pair<std::string, const ComponentSpec*>> algorithms_of(const PipelineSpec& spec);
 
+/// What becomes of samples that leave times out.
+enum class JumpRule {
+  refuse,  ///< they are refused
+  fill     ///< the times between have no outputs, and the input of the sample before
+};
+
+/// What becomes of outputs of times that have passed.
+enum class LateRule {
+  drop,    ///< they are counted, and left out
+  correct  ///< the past is taken again with them, if it is not longer ago than the lag
+};
+
+/// What becomes of a sample that brings nothing that was not known.
+enum class RepeatRule {
+  refuse,  ///< it is answered as an error
+  ignore   ///< it is counted, and left out
+};
+
+/// How samples on line may miss the order of times (docs/online.md).
+struct OnlineSpec {
+  JumpRule jumps = JumpRule::refuse;
+  std::int64_t longest_gap = 1000;  ///< times that are filled at most; longer jumps are refused
+  LateRule late = LateRule::drop;
+  std::int64_t lag = 10;  ///< samples that late outputs may lie behind the last one
+  RepeatRule repeated = RepeatRule::refuse;
+};
+
 /// One axis of a sweep: each of its values takes the place of what stands at `path`, in every place
 /// that the path matches.
 struct SweepAxis {
@@ -205,6 +232,7 @@ struct Study {
       data;  ///< pipelines with a designer take seed, seeds, noise and start of simulated data
   std::vector<PipelineSpec> pipelines;
   std::vector<ComponentSpec> metrics;
+  OnlineSpec online = {};
   std::vector<SweepAxis> sweep = {};  ///< in order; the grid of points is described in sweep.hpp
   std::shared_ptr<const std::string> source = {};  ///< the text of the file
   std::vector<std::string> warnings;  ///< e.g. a refused plugin that the study does not need

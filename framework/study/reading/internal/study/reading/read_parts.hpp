@@ -225,6 +225,9 @@ std::vector<PipelineSpec> read_pipelines(const Cursor& pipelines, const SystemPa
 std::vector<ComponentSpec> read_metrics(const Cursor& metrics, const SystemPart& system,
                                         const ComponentContext& context);
 
+/// "online": what becomes of samples out of order.
+OnlineSpec read_online(const Cursor& at);
+
 /// Do simulations start where pipelines assume it, and can the experiments of designers be
 /// simulated? For studies that have no other problem. `only`: of this pipeline alone.
 void check_study(const Cursor& root, const Study& study, std::optional<std::size_t> only = {});

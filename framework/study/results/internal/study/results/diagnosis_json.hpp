@@ -26,6 +26,9 @@ void write_delays(JsonWriter& json, std::string_view key, const DelayStatistics&
 /// {candidate, consistent, residual, reset_residual, proof}; what is not offered is left out.
 void write(JsonWriter& json, const ModeEvidence& evidence);
 
+/// One of a pipeline's "events".
+void write(JsonWriter& json, const DiagnosisEvent& event, const std::vector<std::string>& modes);
+
 /// One step of results.json.
 void write(JsonWriter& json, const Diagnosis& diagnosis, const std::optional<Index>& truth,
            const std::vector<JudgedBound>& faults, const std::vector<std::string>& modes);

@@ -8,21 +8,9 @@
 #include <vector>
 
 #include "cordon/study/run.hpp"
+#include "study/session/diagnosis_timeline.hpp"
 
 namespace cordon::detail {
-
-/// What of a diagnosis its successor is compared with.
-struct DiagnosisBefore {
-  explicit DiagnosisBefore(const Diagnosis& diagnosis);
-  bool monitors() const { return decision == Decision::monitoring; }
-  /// Is the mode that was monitored here given up in `now`, the next diagnosis? A reset gives it up
-  /// too, even if it is isolated again at once.
-  bool is_given_up_in(const Diagnosis& now) const;
-
-  Decision decision;
-  Index mode;
-  std::vector<bool> candidate;
-};
 
 /// Follows one run. The true mode at k is the one that makes y_k and x_{k+1}: a mode has been
 /// active throughout from s to k if it is the true one at s, …, k.
@@ -63,22 +51,17 @@ class DiagnosisScore {
   std::optional<TrueModeExcluded> excluded_;
 };
 
-/// Makes events of what changes from step to step.
-class DiagnosisTimeline {
+/// Makes events of changes of the true mode, where it is known.
+class TruthTimeline {
  public:
-  void step(const std::optional<Index>& truth, const Diagnosis& now,
-            const std::function<void(DiagnosisEvent)>& tell);
+  void step(Index k, const std::optional<Index>& truth,
+            const std::function<void(DiagnosisEvent)>& tell) {
+    if (truth && truth_ != truth) tell({k, DiagnosisEvent::Kind::truth, *truth, {}});
+    truth_ = truth;
+  }
 
  private:
-  void exclusions(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell);
-
-  void tell_left_open(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell);
-
-  std::optional<DiagnosisBefore> before_;
   std::optional<Index> truth_;
-  std::vector<char> left_open_;  ///< by mode
-  /// Exclusions since the last reset outside the bank, told when they lead to another decision.
-  std::vector<DiagnosisEvent> untold_;
 };
 
 using Delays = std::map<std::int64_t, std::int64_t>;  ///< how often each delay occurred

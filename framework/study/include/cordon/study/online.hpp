@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session beside a plant: samples come as lines of text, and not always in order
+// (docs/online.md).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cordon/study/session.hpp"
+
+namespace cordon {
+
+/// A sample as it was sent.
+struct GivenSample {
+  std::optional<Index> k = {};  ///< nothing: the next one
+  Vector u, y;                  ///< an output that is NaN is missing
+};
+
+/// What became of a sample that was sent.
+struct Taken {
+  enum class How {
+    taken,      ///< it was the next one
+    filled,     ///< the times before it had no samples: they were taken without outputs
+    corrected,  ///< outputs of an earlier time: it was taken again, and all that followed
+    late,       ///< outputs of an earlier time, which were left out
+    repeated    ///< nothing that was not known
+  };
+  How how = How::taken;
+  std::string said = {};  ///< the rule that was followed, for people; "" for the next one
+  /// In the order of times: those that were filled or taken again first.
+  std::vector<SessionStep> steps = {};
+};
+std::string_view to_string(Taken::How how) noexcept;
+
+/// How many samples became what.
+struct TakenCounts {
+  std::int64_t taken = 0, filled = 0, corrected = 0, late = 0, repeated = 0;
+  std::int64_t filled_steps = 0;  ///< times that were filled
+};
+
+/// A session that follows the study's rules ("online") for samples that do not come one after
+/// another.
+class OnlineSession {
+ public:
+  /// As Session; where late outputs correct the past, the components have to offer their states.
+  OnlineSession(const Study& study, const Registry& registry, const std::string& pipeline = "");
+  ~OnlineSession();
+  OnlineSession(OnlineSession&&) noexcept;
+  OnlineSession& operator=(OnlineSession&&) noexcept;
+
+  Session& session();
+  const Session& session() const;
+
+  /// Throws Errc::dimension, Errc::not_finite or Errc::invalid for what is refused: nothing has
+  /// happened then. Other errors are those of Session::step.
+  Taken take(const GivenSample& sample);
+  const TakenCounts& counts() const;
+
+  void start();
+  /// As Session::save and restore, with what late outputs can still correct, and the counts.
+  std::string save();
+  void restore(const std::string& saved);
+
+ private:
+  class Intake;
+  std::unique_ptr<Intake> intake_;
+};
+
+/// Reads lines: JSON objects {"k": 3, "u": [0.5], "y": [1.2, null]}, or rows of a CSV file with a
+/// header row. Members and columns: docs/online.md.
+class SampleLines {
+ public:
+  explicit SampleLines(const Study& study);
+  ~SampleLines();
+  SampleLines(SampleLines&&) noexcept;
+  SampleLines& operator=(SampleLines&&) noexcept;
+
+  /// The sample in the line, whose end may be part of it; nothing: the header, or an empty line.
+  /// Throws InputError with all that is wrong with it.
+  std::optional<GivenSample> read(std::string_view line);
+
+ private:
+  class Reader;
+  std::unique_ptr<Reader> reader_;
+};
+
+/// A step as `steps` of results.json has it, without metrics and true values: {"k": 3, "hull": …}.
+std::string json_of(const SessionStep& step, const std::vector<std::string>& modes);
+/// A list of events as results.json has them.
+std::string events_json_of(const std::vector<DiagnosisEvent>& events,
+                           const std::vector<std::string>& modes);
+/// Its set as a line of sets.jsonl has it, without the end; of an estimate with `is_last`.
+std::string set_json_of(const EstimateStep& step, const std::string& pipeline);
+
+}  // namespace cordon

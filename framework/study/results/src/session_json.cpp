@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Steps of a session as the files of a run have them.
+#include "cordon/study/online.hpp"
+#include "study/results/diagnosis_json.hpp"
+#include "study/results/step_json.hpp"
+#include "study/text/string_sink.hpp"
+
+namespace cordon {
+
+std::string json_of(const SessionStep& step, const std::vector<std::string>& modes) {
+  detail::StringSink text;
+  detail::JsonWriter json(text);
+  if (step.diagnosis) {
+    std::vector<detail::JudgedBound> faults;
+    for (const FaultBound& bound : step.diagnosis->diagnosis.faults) faults.push_back({bound, {}});
+    detail::write(json, step.diagnosis->diagnosis, std::nullopt, faults, modes);
+  } else {
+    const EstimateStep& done = step.estimate.value();
+    // Of observers that lag, what is left out of a sample is not that of the estimate's time.
+    const std::vector<Index> none;
+    const bool is_of_its_time = step.k == done.estimate.k;
+    json.begin_object();
+    detail::write_members(json, done.estimate, done.hull, done.inner,
+                          is_of_its_time ? done.left_out : none);
+    json.end_object();
+  }
+  return std::move(text.text);
+}
+
+std::string events_json_of(const std::vector<DiagnosisEvent>& events,
+                           const std::vector<std::string>& modes) {
+  detail::StringSink text;
+  detail::JsonWriter json(text);
+  json.begin_array();
+  for (const DiagnosisEvent& event : events) detail::write(json, event, modes);
+  json.end_array();
+  return std::move(text.text);
+}
+
+std::string set_json_of(const EstimateStep& step, const std::string& pipeline) {
+  return detail::set_json(step.estimate, step.hull, step.hull_proofs,
+                          detail::json_string(pipeline));
+}
+
+}  // namespace cordon

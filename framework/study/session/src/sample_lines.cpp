@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <variant>
+
+#include "cordon/core/error.hpp"
+#include "cordon/study/online.hpp"
+#include "study/text/json_cursor.hpp"
+#include "study/text/numbers.hpp"
+
+namespace cordon {
+
+namespace {
+
+using json::Cursor;
+using json::in_quotes;
+using json::Problems;
+using json::Value;
+
+constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t most_bytes = std::size_t{1} << 20;
+constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// The fields of a row, in quotes or not. Nothing where quotes do not end.
+std::optional<std::vector<std::string>> fields_of(std::string_view row) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const char c = row[i];
+    if (c == '"' && quoted && i + 1 < row.size() && row[i + 1] == '"') {
+      fields.back() += row[++i];
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  if (quoted) return std::nullopt;
+  for (std::string& field : fields) field = std::string(trimmed(field));
+  return fields;
+}
+
+bool is_missing_field(const std::string& field) {
+  return field.empty() || field == "nan" || field == "NaN" || field == "null";
+}
+
+}  // namespace
+
+class SampleLines::Reader {
+ public:
+  explicit Reader(const Study& study)
+      : inputs_(study.model.inputs()), outputs_(study.model.outputs()) {
+    const auto* recorded = std::get_if<CsvSpec>(&study.data);
+    const std::vector<std::string> none;
+    u_ = columns_of("u", inputs_, study.labels.inputs, recorded ? recorded->inputs : none);
+    y_ = columns_of("y", outputs_, study.labels.outputs, recorded ? recorded->outputs : none);
+  }
+
+  std::optional<GivenSample> read(std::string_view line) {
+    const std::string_view text = trimmed(line);
+    if (text.empty()) return std::nullopt;
+    Problems problems;
+    std::optional<GivenSample> sample;
+    if (text.size() > most_bytes) {
+      problems.add("", 0, "the line is longer than 1 MiB", "a line is one sample");
+    } else if (text.front() == '{') {
+      sample = from_json(text, problems);
+    } else if (header_) {
+      sample = from_row(text, problems);
+    } else {
+      read_header(text, problems);
+    }
+    if (problems.any()) throw InputError("sample", problems.sorted());
+    return sample;
+  }
+
+ private:
+  /// A column under one of its names: that of the label, of the recorded data, or u_1, y_2.
+  struct Column {
+    std::vector<std::string> names;
+    std::size_t at = nowhere;
+  };
+
+  static std::vector<Column> columns_of(const std::string& symbol, Index count,
+                                        const Labels::Names& labels,
+                                        const std::vector<std::string>& recorded) {
+    std::vector<Column> columns;
+    for (Index i = 0; i < count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      Column column{{symbol + "_" + std::to_string(i + 1), heading_of(labels, symbol, i)}};
+      if (at < labels.size()) column.names.push_back(labels[at]);
+      if (at < recorded.size()) column.names.push_back(recorded[at]);
+      columns.push_back(std::move(column));
+    }
+    return columns;
+  }
+
+  std::optional<GivenSample> from_json(std::string_view text, Problems& problems) const {
+    const Value tree = json::parse(text, problems);
+    const Cursor root(tree, "", problems);
+    if (problems.any() || !root.expect(Value::Kind::object, "write {\"u\": [...], \"y\": [...]}"))
+      return std::nullopt;
+    root.expect_keys({"k", "u", "y"}, "member", "a sample has \"k\", \"u\" and \"y\"");
+    GivenSample sample;
+    if (const auto k = root.find("k")) {
+      if (const auto number = json::read_integer(*k, 0, json::max_integer)) sample.k = *number;
+    }
+    sample.u = numbers(root, "u", inputs_, false);
+    sample.y = numbers(root, "y", outputs_, true);
+    return sample;
+  }
+
+  /// Outputs may be null, and so may be the list of all of them.
+  static Vector numbers(const Cursor& root, const char* key, Index count, bool may_be_missing) {
+    Vector values = Vector::Constant(count, missing_value);
+    const auto list = root.find(key);
+    const bool is_null = list && list->is(Value::Kind::null);
+    if ((!list || is_null) && (may_be_missing || (count == 0 && !list))) return values;
+    if (!list) {
+      root.error(
+          "\"" + std::string(key) + "\" is missing",
+          "every sample has its " + std::to_string(count) + (count == 1 ? " input" : " inputs"));
+      return values;
+    }
+    if (!list->expect(Value::Kind::array, "give a list of " + json::counted(count, "number")))
+      return values;
+    if (static_cast<Index>(list->size()) != count) {
+      list->error("has " + json::counted(static_cast<Index>(list->size()), "number") +
+                      ", the system has " + std::to_string(count) +
+                      (may_be_missing ? " outputs" : " inputs"),
+                  may_be_missing ? "write null for an output that is missing" : "");
+      return values;
+    }
+    for (Index i = 0; i < count; ++i) {
+      const Cursor entry = list->item(static_cast<std::size_t>(i));
+      if (may_be_missing && entry.is(Value::Kind::null)) continue;
+      values[i] = json::read_number(entry).value_or(0);
+    }
+    return values;
+  }
+
+  void read_header(std::string_view text, Problems& problems) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    const auto names = fields_of(text);
+    if (!names) {
+      problems.add("", 0, "the header row has quotes that do not end");
+      return;
+    }
+    k_ = place({"k"}, *names);
+    for (Column& column : u_) find(column, *names, problems);
+    for (Column& column : y_) find(column, *names, problems);
+    if (!problems.any()) header_ = names->size();
+  }
+
+  static std::size_t place(const std::vector<std::string>& names,
+                           const std::vector<std::string>& header) {
+    for (const std::string& name : names) {
+      const auto found = std::find(header.begin(), header.end(), name);
+      if (found != header.end()) return static_cast<std::size_t>(found - header.begin());
+    }
+    return nowhere;
+  }
+
+  static void find(Column& column, const std::vector<std::string>& header, Problems& problems) {
+    column.at = place(column.names, header);
+    if (column.at != nowhere) return;
+    const std::vector<std::string> some(
+        header.begin(), header.begin() + std::min<std::ptrdiff_t>(30, std::ssize(header)));
+    problems.add("", 0, "there is no column " + in_quotes(column.names.back()) + " in the header",
+                 suggest(column.names.back(), some));
+  }
+
+  std::optional<GivenSample> from_row(std::string_view text, Problems& problems) const {
+    const auto fields = fields_of(text);
+    if (!fields || fields->size() != *header_) {
+      problems.add("", 0,
+                   fields ? "the row has " + json::counted(std::ssize(*fields), "field") +
+                                ", the header " + std::to_string(*header_)
+                          : "the row has quotes that do not end",
+                   "each row has a field for each column, also where it is empty");
+      return std::nullopt;
+    }
+    GivenSample sample;
+    if (k_ != nowhere && !(*fields)[k_].empty()) {
+      const double k = number((*fields)[k_], "k", problems);
+      if (!(k >= 0) || k != std::floor(k) || k > json::max_integer) {
+        problems.add("", 0, "column \"k\": no number of a step", "steps are counted from 0");
+      } else {
+        sample.k = static_cast<Index>(k);
+      }
+    }
+    sample.u = numbers(u_, *fields, false, problems);
+    sample.y = numbers(y_, *fields, true, problems);
+    return sample;
+  }
+
+  static Vector numbers(const std::vector<Column>& columns, const std::vector<std::string>& fields,
+                        bool may_be_missing, Problems& problems) {
+    Vector values = Vector::Constant(std::ssize(columns), missing_value);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const std::string& field = fields[columns[i].at];
+      if (may_be_missing && is_missing_field(field)) continue;
+      values[static_cast<Index>(i)] = number(field, columns[i].names.back(), problems);
+    }
+    return values;
+  }
+
+  static double number(const std::string& field, const std::string& column, Problems& problems) {
+    const detail::ParsedNumber number = detail::parse_number(field);
+    if (!number.problem.empty())
+      problems.add("", 0, "column " + in_quotes(column) + ": " + number.problem);
+    return number.value;
+  }
+
+  Index inputs_, outputs_;
+  std::vector<Column> u_, y_;
+  std::size_t k_ = nowhere;
+  std::optional<std::size_t> header_;  ///< its number of columns
+};
+
+SampleLines::SampleLines(const Study& study) : reader_(std::make_unique<Reader>(study)) {}
+SampleLines::~SampleLines() = default;
+SampleLines::SampleLines(SampleLines&&) noexcept = default;
+SampleLines& SampleLines::operator=(SampleLines&&) noexcept = default;
+std::optional<GivenSample> SampleLines::read(std::string_view line) { return reader_->read(line); }
+
+}  // namespace cordon

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Samples that are late, doubled or left out: each by the rule that the study names.
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "online/study.hpp"
+
+using namespace online_test;
+using How = Taken::How;
+
+namespace {
+
+OnlineSession session_of(const std::string& rules, const std::string& pipeline = "constrained") {
+  Loaded loaded(rules);
+  return OnlineSession(loaded.study, loaded.registry, pipeline);
+}
+
+std::vector<GivenSample> samples(Index count) {
+  LeakyPlant plant;
+  std::vector<GivenSample> all;
+  for (Index k = 0; k < count; ++k) all.push_back(plant.next());
+  return all;
+}
+
+GivenSample lacking(GivenSample sample, Index output) {
+  sample.y[output] = NAN;
+  return sample;
+}
+
+bool same(const Box& X, const Box& Y) { return X.lower == Y.lower && X.upper == Y.upper; }
+
+}  // namespace
+
+TEST_CASE("samples in order are taken, with and without their time") {
+  OnlineSession session = session_of("");
+  std::vector<GivenSample> given = samples(6);
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (i % 2 == 1) given[i].k.reset();
+    const Taken taken = session.take(given[i]);
+    CHECK(taken.how == How::taken);
+    CHECK(taken.said.empty());
+    REQUIRE(taken.steps.size() == 1);
+    CHECK(taken.steps[0].k == static_cast<Index>(i));
+  }
+  CHECK(session.counts().taken == 6);
+}
+
+TEST_CASE("without rules jumps and repeated samples are refused, and what is late is dropped") {
+  OnlineSession session = session_of("");
+  const std::vector<GivenSample> given = samples(8);
+  session.take(given[0]);
+  session.take(lacking(given[1], 1));
+  CHECK_THROWS_WITH_AS(session.take(given[5]), doctest::Contains("\"jumps\": \"fill\""), Error);
+  CHECK_THROWS_WITH_AS(session.take(given[0]), doctest::Contains("taken already"), Error);
+  const Taken late = session.take(given[1]);
+  CHECK(late.how == How::late);
+  CHECK(late.steps.empty());
+  GivenSample other = given[1];
+  other.y[0] += 1;
+  CHECK_THROWS_WITH_AS(session.take(other), doctest::Contains("other values"), Error);
+  CHECK(session.take(given[2]).how == How::taken);
+}
+
+TEST_CASE("a jump is filled by times without outputs") {
+  OnlineSession session = session_of(R"({"jumps": "fill", "longest_gap": 3})");
+  const std::vector<GivenSample> given = samples(12);
+  session.take(given[0]);
+  const Taken taken = session.take(given[4]);
+  CHECK(taken.how == How::filled);
+  REQUIRE(taken.steps.size() == 4);
+  CHECK(taken.steps.front().k == 1);
+  CHECK(taken.steps.back().k == 4);
+  CHECK(session.counts().filled_steps == 3);
+  CHECK_THROWS_WITH_AS(session.take(given[9]), doctest::Contains("longest_gap"), Error);
+  CHECK(session.take(given[8]).steps.size() == 4);
+}
+
+TEST_CASE("a repeated sample is left out where the study says so") {
+  OnlineSession session = session_of(R"({"repeated": "ignore"})");
+  const std::vector<GivenSample> given = samples(3);
+  session.take(given[0]);
+  const Taken taken = session.take(given[0]);
+  CHECK(taken.how == How::repeated);
+  CHECK(taken.steps.empty());
+  CHECK(session.counts().repeated == 1);
+}
+
+TEST_CASE("late outputs correct the past, to the bits of a run that had them in time") {
+  for (const char* pipeline : {"zonotope", "constrained", "interval", "bank"}) {
+    CAPTURE(pipeline);
+    OnlineSession late = session_of(R"({"late": "correct", "lag": 4})", pipeline),
+                  in_time = session_of("", pipeline);
+    const std::vector<GivenSample> given = samples(12);
+    for (Index k = 0; k < 12; ++k) {
+      const GivenSample& sample = given[static_cast<std::size_t>(k)];
+      late.take(k == 5 ? lacking(sample, 0) : sample);
+      in_time.take(sample);
+      if (k != 8) continue;
+      const Taken taken = late.take(given[5]);
+      CHECK(taken.how == How::corrected);
+      REQUIRE(taken.steps.size() == 4);
+      CHECK(taken.steps.front().k == 5);
+    }
+    CHECK(late.counts().corrected == 1);
+    LeakyPlant plant;
+    for (Index k = 0; k < 12; ++k) plant.next();
+    const GivenSample next = plant.next();
+    const SessionStep one = late.take(next).steps[0], two = in_time.take(next).steps[0];
+    CHECK(json_of(one, late.session().modes()) == json_of(two, in_time.session().modes()));
+    if (one.estimate) CHECK(same(one.estimate->hull, two.estimate->hull));
+  }
+}
+
+TEST_CASE("what is later than the lag is dropped, and said") {
+  OnlineSession session = session_of(R"({"late": "correct", "lag": 2})");
+  const std::vector<GivenSample> given = samples(6);
+  for (Index k = 0; k < 6; ++k) {
+    const GivenSample& sample = given[static_cast<std::size_t>(k)];
+    session.take(k == 1 ? lacking(sample, 0) : sample);
+  }
+  const Taken taken = session.take(given[1]);
+  CHECK(taken.how == How::late);
+  CHECK(taken.said.find("lag") != std::string::npos);
+}
+
+TEST_CASE("the input of a time that was filled comes late as well") {
+  OnlineSession session = session_of(R"({"jumps": "fill", "late": "correct"})"),
+                in_time = session_of("");
+  const std::vector<GivenSample> given = samples(6);
+  for (const Index k : {0, 1, 4, 5}) session.take(given[static_cast<std::size_t>(k)]);
+  for (const GivenSample& sample : given) in_time.take(sample);
+  CHECK(session.take(given[2]).how == How::corrected);
+  const Taken taken = session.take(given[3]);
+  CHECK(taken.how == How::corrected);
+  Session& one = session.session();
+  Session& two = in_time.session();
+  const Vector u = Vector::Zero(1), y = given[5].y;
+  CHECK(same(one.step(u, y).estimate->hull, two.step(u, y).estimate->hull));
+}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lines of samples: JSON and CSV, right, wrong and hostile.
+#include <cmath>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "online/study.hpp"
+
+using namespace online_test;
+
+TEST_CASE("a JSON line is a sample") {
+  Loaded loaded;
+  SampleLines lines(loaded.study);
+  const auto sample = lines.read(R"({"k": 7, "u": [0.5], "y": [1.25, null]})"
+                                 "\r\n");
+  REQUIRE(sample);
+  CHECK(sample->k == 7);
+  CHECK(sample->u[0] == 0.5);
+  CHECK(sample->y[0] == 1.25);
+  CHECK(std::isnan(sample->y[1]));
+  CHECK_FALSE(lines.read("  \n"));
+  CHECK(std::isnan(lines.read(R"({"u": [1]})")->y[0]));
+  CHECK_FALSE(lines.read(R"({"u": [1], "y": null})")->k);
+}
+
+TEST_CASE("rows of a CSV file are samples, by the names of its columns") {
+  Loaded loaded;
+  SampleLines lines(loaded.study);
+  CHECK_FALSE(lines.read("\xEF\xBB\xBFtime,k,y_2,u_1,\"y_1\"\n"));
+  const auto sample = lines.read("0.5,3, 2.5 ,-1,nan\n");
+  REQUIRE(sample);
+  CHECK(sample->k == 3);
+  CHECK(sample->u[0] == -1);
+  CHECK(std::isnan(sample->y[0]));
+  CHECK(sample->y[1] == 2.5);
+  CHECK_THROWS_WITH_AS(lines.read("1,2,3\n"), doctest::Contains("3 fields"), InputError);
+  CHECK_THROWS_WITH_AS(lines.read("0,3.5,1,1,1\n"), doctest::Contains("step"), InputError);
+  CHECK_THROWS_WITH_AS(lines.read("0,3,1,,1\n"), doctest::Contains("u_1"), InputError);
+}
+
+TEST_CASE("all that is wrong with a line is told at once") {
+  Loaded loaded;
+  SampleLines lines(loaded.study);
+  try {
+    lines.read(R"({"k": -1, "u": [1, 2], "y": [1, "a"], "z": 0})");
+    FAIL("a wrong line was taken");
+  } catch (const InputError& error) {
+    CHECK(error.diagnostics().size() == 4);
+  }
+  CHECK_THROWS_AS(lines.read("{\"u\": [1e999], \"y\": [1, 2]}"), InputError);
+  CHECK_THROWS_AS(lines.read("{\"u\": [1], \"u\": [2], \"y\": [1, 2]}"), InputError);
+  CHECK_THROWS_AS(lines.read(std::string(2'000'000, ' ') + "{" + std::string(2'000'000, 'x')),
+                  InputError);
+  CHECK_THROWS_AS(lines.read("{" + std::string(100'000, '[')), InputError);
+}
+
+TEST_CASE("mutated lines are samples or refused, and a session goes on after them") {
+  Loaded loaded(R"({"jumps": "fill", "repeated": "ignore", "late": "correct"})");
+  SampleLines lines(loaded.study);
+  OnlineSession session(loaded.study, loaded.registry, "zonotope");
+  std::mt19937 engine(1);
+  const std::string valid = R"({"k": 12, "u": [0.5], "y": [1.25, -0.75]})";
+  const std::string bytes = "{}[]\",:.-+eE0123456789 nulltrue\\\n\x01\x80\xFF";
+  const auto any = [&](std::size_t below) {
+    return std::uniform_int_distribution<std::size_t>(0, below - 1)(engine);
+  };
+  int taken = 0, refused = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    std::string line = valid;
+    for (std::size_t changes = 1 + any(3); changes > 0 && !line.empty(); --changes) {
+      const std::size_t at = any(line.size());
+      switch (any(3)) {
+        case 0:
+          line[at] = bytes[any(bytes.size())];
+          break;
+        case 1:
+          line.erase(at, 1);
+          break;
+        default:
+          line.insert(at, 1, bytes[any(bytes.size())]);
+      }
+    }
+    if (line.front() != '{') continue;  // else a header of a CSV file
+    try {
+      const auto sample = lines.read(line);
+      if (sample) session.take(*sample);
+      ++taken;
+    } catch (const Error&) {
+      ++refused;
+    }
+    if (session.session().has_ended()) session.start();
+  }
+  CHECK(taken > 1000);
+  CHECK(refused > 1000);
+  session.start();
+  CHECK(session.take(*lines.read(valid)).how == Taken::How::taken);
+}
