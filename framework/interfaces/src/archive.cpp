@@ -4,7 +4,28 @@
 #include <algorithm>
 #include <cstring>
 
+#include "cordon/interfaces/line_form_set.hpp"
+#include "line_form_sets.hpp"
+
 namespace cordon {
+
+namespace {
+
+/// Times that differences can be taken of.
+constexpr Index latest = Index{1} << 60;
+/// An empty set has any dimension in a few bytes, but its exchange form takes memory.
+constexpr Index most_dimensions = Index{1} << 20;
+
+/// A set that is its exchange form, of no plugin's backend.
+void one_form(Archive& archive, SetPtr& X) {
+  LineForm form = X ? X->line_form() : LineForm{};
+  Rounding rounding = X ? X->backend().info().rounding : Rounding::nominal;
+  archive(form);
+  archive.choice(rounding, 3);
+  if (!X) X = line_form_set(std::move(form), rounding, Tightness::exact).set;
+}
+
+}  // namespace
 
 Archive::Archive(std::shared_ptr<const SetBackend> backend)
     : backend_(std::move(backend)), reading_(false) {}
@@ -137,6 +158,7 @@ void Archive::one(LineForm& value) {
 
 void Archive::one(Sample& value) {
   (*this)(value.k, value.u, value.y, value.missing);
+  if (value.k < -latest || value.k > latest) refuse("a time that there is not");
   for (const Index i : value.missing) {
     if (i < 0 || i >= value.y.size()) refuse("an output that there is not");
   }
@@ -164,7 +186,14 @@ void Archive::one(SetPtr& value) {
     value = sets_[static_cast<std::size_t>(number - 1)];
   } else {
     if (reading_) value.reset();
-    backend_->serialize(value, *this);
+    bool is_form = value && &value->backend() != backend_.get() && detail::is_line_form_set(*value);
+    one(is_form);
+    if (is_form) {
+      one_form(*this, value);
+    } else {
+      backend_->serialize(value, *this);
+    }
+    if (value->dim() > most_dimensions) refuse("a set of too many dimensions");
     sets_.push_back(value);
   }
 }

@@ -49,8 +49,7 @@ void Diagnoser::serialize(Archive& archive) {
   if (archive.is_reading()) do_start();
   step_us_ = 0;
   if (!before_) return;
-  if (archive.is_reading())
-    detail::check_sample(*before_, std::nullopt, bank_[bank_.nominal].model);
+  if (archive.is_reading()) detail::check_saved(*before_, bank_[bank_.nominal].model, archive);
   do_serialize(archive);
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cordon/interfaces/backend.hpp"
+#include "line_form_sets.hpp"
 
 namespace cordon {
 
@@ -48,6 +49,10 @@ class LineFormBackend final : public SetBackend {
 Enclosure line_form_set(LineForm X, Rounding rounding, Tightness claim) {
   const auto backend = std::make_shared<const LineFormBackend>(rounding);
   return {SetPtr(backend->hold(std::move(X))), claim};
+}
+
+bool detail::is_line_form_set(const Set& X) {
+  return dynamic_cast<const LineFormBackend*>(&X.backend()) != nullptr;
 }
 
 }  // namespace cordon

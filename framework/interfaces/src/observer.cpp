@@ -360,16 +360,20 @@ void Observer::replace(Enclosure X) {
 
 void Observer::serialize(Archive& archive) {
   archive.section("observer");
+  const Index n = model_.states();
   archive(X0_, before_, begin_, held_, last_, inherited_, last_inherited_, inconsistent_,
           is_cut_to_nothing_, outlier_times_, left_out_, contradiction_, left_region_);
   times_ = {};
+  if (X0_ && (!X0_->set || (*X0_)->dim() != n)) archive.refuse("no initial set of the states");
   if (!before_) return;
-  const Index n = model_.states();
-  const auto fits = [n](const Enclosure& held) {  // the states of one time or of several
-    return held.set && held->dim() >= n && held->dim() % std::max<Index>(n, 1) == 0;
+  const auto fits = [n, lags = lag() > 0](const Enclosure& held) {
+    if (!held.set || !lags) return held.set && held->dim() == n;
+    return held->dim() >= n && held->dim() % std::max<Index>(n, 1) == 0;  // of several times
   };
-  if (archive.is_reading()) detail::check_sample(*before_, std::nullopt, model_);
+  if (archive.is_reading()) detail::check_saved(*before_, model_, archive);
   if (!fits(held_) || !fits(last_)) archive.refuse("a sample without an estimate of the states");
+  if (begin_ > before_->k) archive.refuse("a sample of before the first one");
+  if (!before_->is_complete() && !takes_missing_outputs()) archive.refuse("a sample with a gap");
   do_serialize(archive);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cordon/core/error.hpp"
+#include "cordon/interfaces/archive.hpp"
 
 namespace cordon::detail {
 
@@ -42,6 +43,14 @@ void check_sample(const Sample& sample, std::optional<Index> before, const Model
     throw Error(Errc::invalid, "sample " + std::to_string(sample.k) + " follows sample " +
                                    std::to_string(*before) +
                                    "; samples come one time after another");
+  }
+}
+
+void check_saved(const Sample& sample, const Model& model, const Archive& archive) {
+  try {
+    check_sample(sample, std::nullopt, model);
+  } catch (const Error& error) {
+    archive.refuse(error.what());
   }
 }
 

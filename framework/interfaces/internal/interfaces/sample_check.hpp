@@ -5,11 +5,18 @@
 
 #include "cordon/interfaces/model.hpp"
 
+namespace cordon {
+class Archive;
+}
+
 namespace cordon::detail {
 
 /// Throws unless the sample fits the model, has finite numbers where none is missing, and follows
 /// the sample of the time `before`.
 void check_sample(const Sample& sample, std::optional<Index> before, const Model& model);
+
+/// The same of a sample that was read from there: refused, Errc::invalid.
+void check_saved(const Sample& sample, const Model& model, const Archive& archive);
 
 /// Throws Errc::unsupported: this kind of component does not take the sample's missing outputs.
 [[noreturn]] void refuse_missing(const Sample& sample, const char* kind);
