@@ -5,6 +5,7 @@
 
 #include "cordon/core/linalg.hpp"
 #include "observers/rounding_room.hpp"
+#include "saved_state.hpp"
 
 namespace cordon::estimators {
 
@@ -67,6 +68,12 @@ Vector ErrorMemory::bound() const {
 void ErrorMemory::add_bound(Vector& to) const {
   to += of_->largest.lazyProduct(past_);
   to += of_->sum.lazyProduct(now_);
+}
+
+void ErrorMemory::serialize(Archive& archive) {
+  serialize_within(archive, steps_, 0, of_->block);
+  archive.same_shape(past_);
+  archive.same_shape(now_);
 }
 
 }  // namespace cordon::estimators

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cordon/core/types.hpp"
+#include "cordon/interfaces/archive.hpp"
 
 namespace cordon::estimators {
 
@@ -26,6 +27,7 @@ class ErrorMemory {
   void add_bound(Vector& to) const;
   /// At least Σ_j ‖Fʲ‖∞ over all j, with room for the rounding of the powers; ∞: not known.
   double sum_of_norms() const { return of_->sum_of_norms; }
+  void serialize(Archive& archive);
 
  private:
   struct Powers {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "components.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "observer_parameters.hpp"
 #include "observers/corrected_recursion.hpp"
 
@@ -50,6 +51,13 @@ class FixedLag final : public Observer {
 
   /// Z is a stack, of one time where a set of states takes its place.
   void do_replace(const Enclosure& Z) override { Z_ = Z; }
+
+  void do_serialize(Archive& archive) override {
+    archive(Z_);
+    const Index n = model().states();
+    if (!Z_.set || Z_->dim() < n || Z_->dim() > n * (lag_ + 1) || (n > 0 && Z_->dim() % n != 0))
+      archive.refuse("no stack of states");
+  }
 
   Index times_in(const Enclosure& Z) const { return Z->dim() / model().states(); }
 

@@ -11,6 +11,7 @@
 
 #include "components.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "observer_parameters.hpp"
 #include "observers/at_rest.hpp"
@@ -55,6 +56,7 @@ class GainCorrection final : public Observer {
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
+    correction_.start();
     return X_ = corrected(first_, X0 ? *X0 : backend().import(X0_), first);
   }
   Enclosure do_step(const Sample& before, const Sample& now) override {
@@ -68,6 +70,10 @@ class GainCorrection final : public Observer {
     return X_ = corrected(correction_, predicted, now);
   }
   void do_replace(const Enclosure& X) override { X_ = X; }
+  void do_serialize(Archive& archive) override {
+    archive.set(X_, model().states());
+    archive(correction_);
+  }
 
   /// Nothing where X has no bounds.
   std::optional<Enclosure> in_one_step(VectorIn u, const Sample& now) {

@@ -40,4 +40,19 @@ void GainedRecursion::tell(WideningLimit& limit, const Sample& before) const {
   }
 }
 
+void GainedRecursion::start() {
+  if (!is_time_varying()) return;
+  complete_.start(gain_.gain.L);
+  others_.clear();
+}
+
+/// With one gain for all times recursions are made again as they were.
+void GainedRecursion::serialize(Archive& archive) {
+  if (!is_time_varying()) return;
+  archive(complete_);
+  others_.serialize(
+      archive, model_.outputs(), [&](const auto& present) { return with(present); },
+      [&](Others& others) { archive(others.recursion); });
+}
+
 }  // namespace cordon::estimators

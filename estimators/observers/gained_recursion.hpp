@@ -33,6 +33,9 @@ class GainedRecursion {
   const LuenbergerRecursion& used() const { return last_ ? last_->recursion : complete_; }
   /// Tells `limit` of the step that `next` has taken last.
   void tell(WideningLimit& limit, const Sample& before) const;
+  /// As if no gain had followed a set yet.
+  void start();
+  void serialize(Archive& archive);
 
  private:
   struct Others {

@@ -110,4 +110,19 @@ std::optional<Box> InnerEnvelope::hull() const {
   return hull;
 }
 
+void InnerEnvelope::serialize(Archive& archive) {
+  archive(running_);
+  if (!running_) return;
+  if (!is_on()) archive.refuse("an inner estimate that was not asked for");
+  archive(G0_);
+  const Index n = copies_.front().A.rows();
+  if (G0_.rows() != n) archive.refuse("generators of another dimension");
+  for (Copy& copy : copies_) {
+    archive(copy.power, copy.center, copy.noise);
+    if (copy.power.rows() != n || copy.power.cols() != n || copy.center.size() != n ||
+        copy.noise.size() != n)
+      archive.refuse("an inner estimate of another dimension");
+  }
+}
+
 }  // namespace cordon::estimators

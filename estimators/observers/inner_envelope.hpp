@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/registry/plugin.hpp"
 
 namespace cordon::estimators {
@@ -40,6 +41,7 @@ class InnerEnvelope {
   /// The hull of all x̂_k, which exceeds that of the estimate by rounding only; nothing if it has
   /// ended.
   std::optional<Box> hull() const;
+  void serialize(Archive& archive);
 
  private:
   struct Copy {

@@ -2,6 +2,7 @@
 #include "observers/interval_observer.hpp"
 
 #include "cordon/core/tolerances.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "observer_parameters.hpp"
 
 namespace cordon::estimators {
@@ -61,6 +62,12 @@ Enclosure IntervalObserver::do_start(const std::optional<Enclosure>& X0, const S
 void IntervalObserver::do_replace(const Enclosure& X) {
   set(X->interval_hull());
   inner_.end();
+}
+
+void IntervalObserver::do_serialize(Archive& archive) {
+  archive.same_shape(c_);
+  archive.same_shape(r_);
+  archive(inner_);
 }
 
 IntervalObserver::Recursions IntervalObserver::recursions_for(

@@ -29,6 +29,7 @@ class IntervalObserver final : public Observer {
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override;
   Enclosure do_step(const Sample& before, const Sample& now) override;
   void do_replace(const Enclosure& X) override;
+  void do_serialize(Archive& archive) override;
 
   struct Recursions {
     IntervalRecursion upper;

@@ -5,6 +5,7 @@
 // empty; that an output contradicts it shows in the residual set, which the diagnoser
 // "observer_bank" watches.
 #include "components.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "observer_parameters.hpp"
 #include "observers/gained_recursion.hpp"
 #include "observers/interval_spread.hpp"
@@ -48,6 +49,11 @@ class Luenberger final : public Observer {
   void do_replace(const Enclosure& X) override {
     X_ = X;
     limit_.start(recursion_.complete(), X);
+  }
+  void do_serialize(Archive& archive) override {
+    archive.set(X_, model().states());
+    archive(recursion_);
+    limit_.serialize(archive, recursion_.complete());
   }
 
   LineForm X0_;

@@ -150,6 +150,18 @@ void LuenbergerRecursion::take_thickness() {
   thick_L_ = L_;
 }
 
+void LuenbergerRecursion::start(Matrix L) {
+  thick_L_.resize(0, 0);
+  use_gain(std::move(L));
+}
+
+void LuenbergerRecursion::serialize(Archive& archive) {
+  if (held_.cols() == 0) return;
+  archive.same_shape(thick_L_);
+  if (!thick_L_.allFinite()) archive.refuse("a gain that is not finite");
+  if (archive.is_reading()) start(Matrix(thick_L_));  // finds the thickness again
+}
+
 /// ∞ in rows of A - L C̄ that were rounded in a column along which X̂ has no end: what that does to
 /// them has no bound. 0 in others.
 Vector LuenbergerRecursion::lost_rows(const Box& reach) const {

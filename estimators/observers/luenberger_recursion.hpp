@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/interfaces/backend.hpp"
 #include "cordon/interfaces/model.hpp"
 #include "observers/rounding_room.hpp"
@@ -34,6 +35,11 @@ class LuenbergerRecursion {
 
   /// The gain from now on; n×n_y. Throws Errc::dimension.
   void use_gain(Matrix L);
+  /// The same, as the first one.
+  void start(Matrix L);
+  /// What gains so far have left: how thick X̂⁺ is known to be, where `held` tells it. The gain is
+  /// to be given anew.
+  void serialize(Archive& archive);
 
   const SetBackend& backend() const { return *backend_; }
 

@@ -3,6 +3,7 @@
 // with constrained and line zonotopes until a reduction bites; zonotopes intersect strip by strip,
 // intervals contract.
 #include "components.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "observer_parameters.hpp"
 #include "observers/corrected_recursion.hpp"
 
@@ -38,6 +39,7 @@ class PredictionCorrection final : public Observer {
   }
 
   void do_replace(const Enclosure& X) override { X_ = X; }
+  void do_serialize(Archive& archive) override { archive.set(X_, model().states()); }
 
   Enclosure corrected(const Enclosure& X, const Sample& now) {
     const Enclosure narrowed =

@@ -9,6 +9,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
 #include "observers/interval_spread.hpp"
@@ -129,6 +130,18 @@ class PseudoInverseObserver final : public Observer {
   }
 
   void do_replace(const Enclosure& X) override { X_ = X; }
+
+  void do_serialize(Archive& archive) override {
+    const LinearModel& m = model().linear;
+    archive.set(X_, m.states());
+    archive(unit_);
+    if (unit_ == 0) return;
+    if (archive.is_reading()) {
+      L_.resize(m.states(), m.outputs());
+      solved_P_.resize(m.states(), m.states());
+    }
+    for (Matrix* kept : {&L_, &minus_LDv_, &map_, &solved_P_}) archive.same_shape(*kept);
+  }
 
   std::shared_ptr<PseudoInverseOutputs> outputs_of(const Sample& sample) {
     if (sample.is_complete()) return complete_;

@@ -10,6 +10,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
 #include "observers/interval_spread.hpp"
@@ -134,6 +135,7 @@ class SemiExplicitObserver final : public Observer {
   }
 
   void do_replace(const Enclosure& X) override { Z_ = to_z(X); }
+  void do_serialize(Archive& archive) override { archive.set(Z_, model().states()); }
 
   /// M in the dynamic rows, above zeros for ž.
   Matrix stacked(const Matrix& M) const {

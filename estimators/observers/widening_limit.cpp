@@ -5,6 +5,7 @@
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/tolerances.hpp"
+#include "saved_state.hpp"
 
 namespace cordon::estimators {
 
@@ -56,6 +57,14 @@ Vector ErrorHull::half_widths() const {
   return h * (1 + rounding_share);
 }
 
+void ErrorHull::serialize(Archive& archive) {
+  for (Matrix* part : {&power_, &noise_, &powers_}) archive.same_shape(*part);
+  for (Vector* part : {&start_, &sum_}) archive.same_shape(*part);
+  archive(b_, settled_);
+  serialize_within(archive, steps_, 0, Index{1} << 60);
+  if (b_.size() != 0 && b_.size() != sum_.size()) archive.refuse("half widths of another size");
+}
+
 void WideningLimit::start(const LuenbergerRecursion& recursion, const Enclosure& X) {
   errors_.reset();
   if (limit_ == 0 || recursion.backend().info().rounding == Rounding::outward) return;
@@ -90,6 +99,17 @@ void WideningLimit::step_with_gap(const LuenbergerRecursion& recursion,
              absolute_row_sums(others.error_noise());
   if (open.size() > 0) h += open;
   errors_.emplace(recursion.error_map(), recursion.error_noise(), h * (1 + rounding_share));
+}
+
+void WideningLimit::serialize(Archive& archive, const LuenbergerRecursion& recursion) {
+  bool has_errors = errors_.has_value();
+  archive(has_errors);
+  if (archive.is_reading()) errors_.reset();
+  if (!has_errors) return;
+  const Index n = recursion.error_map().rows();
+  if (!errors_) errors_.emplace(recursion.error_map(), recursion.error_noise(), Vector::Zero(n));
+  archive(*errors_, center_);
+  if (center_.size() != n) archive.refuse("a centre of another size");
 }
 
 Enclosure WideningLimit::apply(const SetBackend& backend, const Enclosure& X, Box* known) const {

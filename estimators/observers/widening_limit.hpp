@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cordon/core/box.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/interfaces/backend.hpp"
 #include "observers/luenberger_recursion.hpp"
 
@@ -25,6 +26,7 @@ class ErrorHull {
   /// infinite.
   void step(const Vector& b);
   Vector half_widths() const;
+  void serialize(Archive& archive);
 
  private:
   void settle();
@@ -58,6 +60,7 @@ class WideningLimit {
   void step_with_gap(const LuenbergerRecursion& recursion, const LuenbergerRecursion& others,
                      const Sample& before, const Vector& open);
   void stop() { errors_.reset(); }
+  void serialize(Archive& archive, const LuenbergerRecursion& recursion);
 
   /// X, reduced, or the box in its place. `hull`, if asked for: that of the result; of dimension 0
   /// where it was not needed.

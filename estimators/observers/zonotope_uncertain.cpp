@@ -5,6 +5,7 @@
 // |c|), and loses the truth.)
 #include "components.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "observer_parameters.hpp"
 #include "observers/gained_recursion.hpp"
@@ -58,6 +59,11 @@ class ZonotopeUncertain final : public Observer {
     X_ = X;
     limit_.start(recursion_.complete(), X);
     inner_.end();
+  }
+  void do_serialize(Archive& archive) override {
+    archive.set(X_, model().states());
+    archive(recursion_, inner_);
+    limit_.serialize(archive, recursion_.complete());
   }
   /// Claimed outer: what the measurement of the same time says is left out.
   Enclosure estimate() const { return {X_.set, Tightness::outer}; }

@@ -68,6 +68,7 @@ class NonlinearObserver final : public Observer {
   }
 
   void do_replace(const Enclosure& X) override { recursion_.start(X); }
+  void do_serialize(Archive& archive) override { archive(recursion_); }
 
   Enclosure corrected(bool is_there, const Sample& now) {
     is_there = is_there && timed(Phase::correct, [&] { return recursion_.correct(now); });

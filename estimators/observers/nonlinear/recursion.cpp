@@ -108,6 +108,17 @@ bool NonlinearRecursion::admit() {
   return narrow_box();
 }
 
+void NonlinearRecursion::serialize(Archive& archive) {
+  archive.set(X_, model_->states());
+  archive(B_);
+  if (B_.dim() != X_->dim() || B_.lower.hasNaN() || B_.upper.hasNaN())
+    archive.refuse("no box of the states");
+  if (!archive.is_reading()) return;
+  before_.reset();
+  images_.clear();
+  hull_.reset();
+}
+
 void NonlinearRecursion::set(Enclosure X) {
   X_ = std::move(X);
   hull_.reset();

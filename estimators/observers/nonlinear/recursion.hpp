@@ -22,6 +22,7 @@
 #include "cordon/core/tolerances.hpp"
 #include "cordon/formulas/box_enclosure.hpp"
 #include "cordon/formulas/relaxation.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/interfaces/backend.hpp"
 #include "cordon/interfaces/model.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
@@ -64,6 +65,8 @@ class NonlinearRecursion {
 
   const Enclosure& set() const { return X_; }
   const Box& box() const { return B_; }
+  /// Between two samples: the set and the box.
+  void serialize(Archive& archive);
   /// May the box exclude points of the set? The estimate is then X ∩ B: what follows rests on both.
   bool is_box_narrower() const;
 

@@ -69,6 +69,7 @@ class StripObserver final : public Observer {
   }
 
   void do_replace(const Enclosure& X) override { recursion_.start(X->line_form()); }
+  void do_serialize(Archive& archive) override { archive(recursion_); }
 
   Enclosure corrected(const Sample& now) {
     if (!timed(Phase::correct, [&] { return recursion_.correct(now); }))

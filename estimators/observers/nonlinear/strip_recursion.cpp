@@ -328,4 +328,11 @@ bool StripRecursion::correct(const Sample& now) {
   return is_there;
 }
 
+void StripRecursion::serialize(Archive& archive) {
+  archive(c_, G_);
+  const Index n = model_->states();
+  if (c_.size() != n || G_.rows() != n || !c_.allFinite() || !G_.allFinite())
+    archive.refuse("no zonotope of the states");
+}
+
 }  // namespace cordon::estimators

@@ -20,6 +20,7 @@
 #pragma once
 
 #include "cordon/formulas/evaluator.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/interfaces/model.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
 #include "observers/nonlinear/affine_rows.hpp"
@@ -38,6 +39,8 @@ class StripRecursion {
   void predict(const Sample& before);
   /// False: a strip is proven to miss the set.
   bool correct(const Sample& now);
+
+  void serialize(Archive& archive);
 
   const Vector& center() const { return c_; }
   const Matrix& generators() const { return G_; }
