@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "saved_state.hpp"
+
 namespace cordon::estimators {
 
 ModeElimination::ModeElimination(Index modes, Index waiting_time, std::optional<Index> known)
@@ -51,6 +53,15 @@ bool ModeElimination::update(Index k, const std::vector<bool>& excluded) {
   const bool switched = lasted && decision_ != Decision::unknown_fault;
   reset(k, switched ? Decision::isolating : Decision::unknown_fault);
   return true;
+}
+
+void ModeElimination::serialize(Archive& archive) {
+  const auto modes = static_cast<Index>(candidate_.size());
+  serialize_flags(archive, candidate_);
+  archive(decision_, was_reset_);
+  serialize_within(archive, mode_, -1, modes - 1);
+  serialize_time(archive, since_);
+  if (decision_ == Decision::monitoring && mode_ < 0) archive.refuse("a decision without a mode");
 }
 
 }  // namespace cordon::estimators

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/interfaces/diagnoser.hpp"
 
 namespace cordon::estimators {
@@ -34,6 +35,8 @@ class ModeElimination {
   /// from since() to k. Entries of modes that are no candidates are ignored. True: a reset, the
   /// caller begins anew with every mode at time k.
   bool update(Index k, const std::vector<bool>& excluded);
+
+  void serialize(Archive& archive);
 
   Decision decision() const { return decision_; }
   Index mode() const {

@@ -35,6 +35,7 @@
 #include "diagnosers/mode_gain.hpp"
 #include "diagnosers/mode_workers.hpp"
 #include "observers/observer_parameters.hpp"
+#include "saved_state.hpp"
 
 namespace cordon::estimators {
 
@@ -101,6 +102,16 @@ class ConsistencyBank final : public Diagnoser {
     lost_.assign(observers_.size(), "");
     throughout_.clear();
     ended_ = unfinished_ = false;
+  }
+
+  void do_serialize(Archive& archive) override {
+    for (const auto& observer : observers_) archive(*observer);
+    bool are_told = !throughout_.empty();
+    archive(elimination_, lost_, are_told, ended_, unfinished_);
+    serialize_time(archive, since_);
+    if (lost_.size() != observers_.size()) archive.refuse("another number of modes");
+    if (archive.is_reading()) throughout_.assign(are_told ? observers_.size() : 0, std::nullopt);
+    if (changes_) archive(*changes_);
   }
 
   Diagnosis do_step(const Sample* before, const Sample& now) override {
@@ -243,7 +254,8 @@ class ConsistencyBank final : public Diagnoser {
   std::vector<std::shared_ptr<Observer>> observers_;
   std::optional<FollowedChanges> changes_;            ///< none: not followed
   std::vector<std::optional<Enclosure>> throughout_;  ///< estimates of the sample before, since all
-                                                      ///< began; empty: this one is the first
+                                                      ///< began; empty: this one is the first,
+                                                      ///< which is all that is asked of them
   std::vector<Enclosure> restarts_;  ///< from which modes begin anew; empty: they cannot
   /// Why formulas could not be enclosed any more, or the model is not proven for the states that
   /// the mode allows: the mode stays possible until a reset. "" for others.

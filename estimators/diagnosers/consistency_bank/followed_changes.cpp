@@ -5,6 +5,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
+#include "saved_state.hpp"
 
 namespace cordon::estimators {
 
@@ -139,6 +140,17 @@ void FollowedChanges::take(std::size_t j, const Sample& now, const Sets& followe
   } else {
     std::swap(mode.going_on, mode.beginning);
     mode.runs = true;
+  }
+}
+
+void FollowedChanges::serialize(Archive& archive) {
+  for (std::size_t i = 0; i < lasting_.size(); ++i) {
+    const Index n = bank_.modes[i].model.states();
+    archive(*lasting_[i].observer);
+    serialize_set(archive, lasting_[i].states, n);
+    archive(*changed_[i].going_on, *changed_[i].beginning);
+    serialize_set(archive, changed_[i].states, n);
+    archive(changed_[i].runs, changed_[i].lost);
   }
 }
 

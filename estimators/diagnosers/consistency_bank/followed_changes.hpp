@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/interfaces/observer.hpp"
 #include "diagnosers/mode_workers.hpp"
 
@@ -34,6 +35,8 @@ class FollowedChanges {
   /// before stays so. `unknown`: modes i that are possible, and of which X^i is not known any more.
   void step(const Sample& now, const std::vector<std::optional<Enclosure>>& throughout,
             const std::vector<bool>& unknown, ModeWorkers& workers);
+
+  void serialize(Archive& archive);
 
   /// Z^j; none: ∅.
   const std::optional<Enclosure>& since_change(std::size_t j) const { return changed_[j].states; }

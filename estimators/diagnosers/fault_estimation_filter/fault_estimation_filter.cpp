@@ -22,6 +22,7 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "diagnosers/fault_estimation_filter/filter_rounding.hpp"
+#include "saved_state.hpp"
 
 namespace cordon::estimators {
 
@@ -85,6 +86,17 @@ class FaultEstimationFilter final : public Diagnoser {
 
   bool do_takes_missing_outputs() const override { return true; }
   void do_start() override { unfinished_ = excluded_ = was_gap_ = false; }
+
+  void do_serialize(Archive& archive) override {
+    serialize_time(archive, since_);
+    archive(excluded_, was_gap_, unfinished_);
+    if (was_gap_ && !admissible_) archive.refuse("a gap without an admissible set");
+    if (was_gap_) return;  // it begins anew
+    serialize_time(archive, first_);
+    archive(recursion_, rounding_, x_, y_.value);
+    if (x_.size() != model_.linear.states() || y_.value.size() != model_.linear.outputs())
+      archive.refuse("a sample of other sizes");
+  }
 
   Diagnosis do_step(const Sample* before, const Sample& now) override {
     if (unfinished_)

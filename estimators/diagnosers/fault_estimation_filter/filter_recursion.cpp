@@ -225,4 +225,20 @@ Vector lasting_half_widths(FilterRecursion recursion, const Matrix& H) {
   }
 }
 
+void FilterRecursion::serialize(Archive& archive) {
+  const Index n = C_.cols();
+  archive(R_, A_, steps_, half_width_);
+  if (R_.rows() != n || A_.rows() != n || half_width_.size() != MC_.rows())
+    archive.refuse("error sets of another dimension");
+  if (steps_ < 0) archive.refuse("a step before the first one");
+  if (!R_.allFinite() || !A_.allFinite()) archive.refuse("error sets that are not finite");
+  if (steps_ == 0) return;  // no gain yet
+  if (archive.is_reading()) {
+    G_.resize(base_gain_.rows(), base_gain_.cols());
+    reduced_gain_.resize(base_gain_.rows(), Omega_.rows());
+  }
+  archive.same_shape(G_);
+  archive.same_shape(reduced_gain_);
+}
+
 }  // namespace cordon::estimators

@@ -3,6 +3,7 @@
 // data. [Wang2017]
 #pragma once
 
+#include "cordon/interfaces/archive.hpp"
 #include "diagnosers/fault_estimation_filter/filter_design.hpp"
 
 namespace cordon::estimators {
@@ -39,6 +40,9 @@ class FilterRecursion {
   void start(const Matrix& H);
   /// From k to k + 1. Throws Errc::not_finite where the bounds have outgrown the numbers.
   void advance();
+
+  /// After a first `start`.
+  void serialize(Archive& archive);
 
   bool is_reduced() const { return max_columns_ > 0; }
   bool has_last_gain() const { return !is_reduced() && steps_ >= steps_of_gains; }

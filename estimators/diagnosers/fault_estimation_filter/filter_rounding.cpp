@@ -7,6 +7,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/tolerances.hpp"
+#include "saved_state.hpp"
 
 namespace cordon::estimators {
 
@@ -145,6 +146,15 @@ void FilterRounding::settle(Input input, const FilterRecursion& recursion, const
       (left + product(defect_, input.x.cwiseAbs() + error_size_)).asDiagonal().toDenseMatrix();
   generators_ = std::move(kept);
   now_ = std::move(input);
+}
+
+void FilterRounding::serialize(Archive& archive) {
+  const Index n = A_size_.rows(), p = C_size_.rows(), q = by_faults_.rows();
+  archive(generators_, now_.x, now_.output, now_.fault_size, error_size_, slack_);
+  serialize_within(archive, steps_, 1, most_own_steps + 1);
+  const bool fits = generators_.rows() == n && now_.x.size() == n && now_.output.size() == p &&
+                    now_.fault_size.size() == q && error_size_.size() == n && slack_.size() == q;
+  if (!fits) archive.refuse("rounding errors of another dimension");
 }
 
 }  // namespace cordon::estimators

@@ -34,6 +34,8 @@ class FilterRounding {
   /// least n that keeps to that. `settle` throws Errc::not_finite where rounding has a quarter of a
   /// fault's response or more.
   const Vector& slack() const { return slack_; }
+  /// After a first `start`.
+  void serialize(Archive& archive);
 
  private:
   void settle(Input input, const FilterRecursion& recursion, const Matrix& kept,

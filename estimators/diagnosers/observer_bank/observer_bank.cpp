@@ -9,6 +9,7 @@
 #include "cordon/solvers/set_questions.hpp"
 #include "diagnosers/mode_gain.hpp"
 #include "gains/gain_certificate.hpp"
+#include "saved_state.hpp"
 
 namespace cordon::estimators {
 
@@ -116,6 +117,14 @@ void ObserverBank::expect_input(const Sample& now) const {
   throw Error(Errc::invalid, "u at k = " + std::to_string(now.k) +
                                  " lies outside the interval hull of the input set U, on which the "
                                  "bank's error set rests; widen /system/U");
+}
+
+void ObserverBank::expect_residuals(const Sample* before, const Sample& now) {
+  if (!residuals_.empty()) return;
+  const bool has_gap = !now.is_complete() || (before && !before->is_complete());
+  const auto drifts = [](const Member& m) { return !m.drift.is_none(); };
+  if (has_gap || std::any_of(members_.begin(), members_.end(), drifts))
+    residuals_ = residual_bounds(bank(), options_.gains, options_.offline);
 }
 
 void ObserverBank::see(Index j, const Sample& sample, Seen& seen) {
@@ -244,8 +253,7 @@ Diagnosis ObserverBank::do_step(const Sample* before, const Sample& now) {
     throw Error(Errc::invalid,
                 "the last step ended with an error, and left sets of different times; start anew");
   expect_input(now);
-  if (!now.is_complete() && residuals_.empty())
-    residuals_ = residual_bounds(bank(), options_.gains, options_.offline);
+  expect_residuals(before, now);
   unfinished_ = true;
   const Index modes = bank().size();
   if (!before) {
@@ -326,6 +334,28 @@ Diagnosis ObserverBank::report(const Sample& now) const {
     diagnosis.estimate = m.copy ? *m.copy : m.X;
   }
   return diagnosis;
+}
+
+/// Residuals, evidence and sizes are made anew by every sample.
+void ObserverBank::serialize_member(Member& m, Archive& archive) {
+  const Index n = bank()[bank().nominal].model.states();
+  archive.set(m.X, n);
+  serialize_set(archive, m.copy, n);
+  serialize_set(archive, m.bound, n);
+  m.X_limit.serialize(archive, m.recursion);
+  m.copy_limit.serialize(archive, m.recursion);
+  m.drift.serialize(archive, n);
+  archive(m.rounding, m.X_hull, m.copy_hull, m.center);
+  for (const Box* hull : {&m.X_hull, &m.copy_hull})
+    if (hull->dim() != 0 && hull->dim() != n) archive.refuse("a hull of another dimension");
+  if (m.center.size() != n) archive.refuse("a centre of another size");
+}
+
+void ObserverBank::do_serialize(Archive& archive) {
+  for (Member& m : members_) serialize_member(m, archive);
+  archive(elimination_, was_reset_, unfinished_);
+  serialize_within(archive, suggested_, -1, bank().size() - 1);
+  serialize_time(archive, suggesting_since_);
 }
 
 std::vector<Gain> ObserverBank::gains() const {

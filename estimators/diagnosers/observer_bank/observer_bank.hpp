@@ -86,8 +86,12 @@ class ObserverBank final : public Diagnoser {
   void do_start() override;
   Diagnosis do_step(const Sample* before, const Sample& now) override;
   std::optional<Guarantees> do_guarantees() const override;
+  void do_serialize(Archive& archive) override;
 
+  void serialize_member(Member& member, Archive& archive);
   void expect_input(const Sample& now) const;
+  /// Makes `residuals_` where this step takes them.
+  void expect_residuals(const Sample* before, const Sample& now);
   /// A sample's outputs, and the recursion of one mode for them.
   struct Seen {
     std::shared_ptr<const LuenbergerRecursion> others;

@@ -30,4 +30,15 @@ void PointDrift::step(const Sample& sample, MatrixIn error_map, MatrixIn L, cons
   set_ = std::move(next);
 }
 
+void PointDrift::serialize(Archive& archive, Index n) {
+  bool is_there = set_.has_value();
+  archive(is_there);
+  if (archive.is_reading()) set_.reset();
+  if (!is_there) return;
+  if (!set_) set_ = sets::Zonotope{Vector(n), Matrix(n, 0)};
+  archive(set_->c, set_->G);
+  if (set_->c.size() != n || set_->G.rows() != n || !set_->c.allFinite() || !set_->G.allFinite())
+    archive.refuse("no zonotope of the states");
+}
+
 }  // namespace cordon::estimators

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cordon/core/box.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/interfaces/model.hpp"
 #include "cordon/sets/zonotope.hpp"
 
@@ -24,6 +25,8 @@ class PointDrift {
   /// Bounds of |ρ|, and of |x̂ - x̂'| before a first gap, by rounding alone. O(n² g), g ≤ 20 n.
   void step(const Sample& sample, MatrixIn error_map, MatrixIn L, const Box& residuals,
             VectorIn rounding, VectorIn before_gap);
+  /// In n dimensions.
+  void serialize(Archive& archive, Index n);
   /// Holds δ.
   const sets::Zonotope& set() const { return *set_; }
 

@@ -22,6 +22,7 @@
 #include "cordon/interfaces/nonlinear_model.hpp"
 #include "designers/designer_parameters.hpp"
 #include "diagnosers/tube_membership/membership.hpp"
+#include "saved_state.hpp"
 
 namespace cordon::estimators {
 
@@ -50,6 +51,7 @@ class TubeMembership final : public Diagnoser {
   void do_start() override {
     candidate_.assign(static_cast<std::size_t>(bank().size()), true);
     u_ = y_ = Vector(0);
+    taken_ = 0;
     lost_.assign(candidate_.size(), "");
     along_.clear();
   }
@@ -99,7 +101,37 @@ class TubeMembership final : public Diagnoser {
     }
     u_ = u;
     y_ = y;
+    ++taken_;
     candidate_ = std::move(candidate);
+  }
+
+  void do_serialize(Archive& archive) override {
+    const std::size_t modes = candidate_.size();
+    serialize_flags(archive, candidate_);
+    archive(lost_, u_, y_);
+    serialize_time(archive, since_);
+    serialize_within(archive, taken_, 0, horizon_ + 1);
+    if (lost_.size() != modes) archive.refuse("another number of modes");
+    const Model& model = bank()[bank().nominal].model;
+    if (u_.size() != taken_ * model.inputs() || y_.size() != taken_ * model.outputs())
+      archive.refuse("samples of other sizes");
+    if (!u_.allFinite() || y_.array().isInf().any()) archive.refuse("a sample that is not finite");
+    if (archive.is_reading()) follow_again(archive);
+  }
+
+  /// All inputs so far, for modes by formulas that are still asked about.
+  void follow_again(const Archive& archive) {
+    along_.clear();
+    begin(since_);
+    for (std::size_t j = 0; j < along_.size(); ++j) {
+      if (!along_[j] || !candidate_[j] || !lost_[j].empty()) continue;
+      const Index size = bank().modes[j].model.inputs();
+      try {
+        for (Index k = 0; k < taken_; ++k) along_[j]->append(u_.segment(k * size, size));
+      } catch (const Error& error) {
+        archive.refuse(error.what());
+      }
+    }
   }
 
   void begin(Index k) {
@@ -138,6 +170,7 @@ class TubeMembership final : public Diagnoser {
   std::vector<std::optional<AlongTrajectories>> along_;  ///< by mode, of those by formulas
   std::vector<std::string> lost_;  ///< why a mode cannot be excluded any more; "": it can
   Vector u_, y_;                   ///< since the first sample
+  Index taken_ = 0;                ///< samples in them
   Index since_ = 0;
 };
 
