@@ -31,6 +31,15 @@ class Bank : public Diagnoser {
     since_ = -1;
   }
   void do_start() override { reset(); }
+  void do_serialize(Archive& archive) override {
+    for (std::size_t j = 0; j < filters_.size(); ++j) {
+      bool excluded = excluded_[j];
+      filters_[j]->save(archive);
+      archive(excluded);
+      excluded_[j] = excluded;
+    }
+    archive(since_);
+  }
   Diagnosis do_step(const Sample* before, const Sample& now) override {
     if (since_ < 0) since_ = now.k;
     Diagnosis d;
@@ -112,6 +121,14 @@ class StartsNowhere final : public Bank {
   }
 };
 
+class ForgetsExclusions final : public Bank {
+  using Bank::Bank;
+  void do_serialize(Archive& archive) override {
+    for (const auto& filter : filters_) filter->save(archive);
+    archive(since_);
+  }
+};
+
 class TellsCorners final : public Bank {
   using Bank::Bank;
   std::optional<Enclosure> told(const Filter& filter) override {
@@ -169,6 +186,8 @@ void add_diagnosers(Registrar& r) {
                              "never excludes the mode that stands first");
   add_diagnoser<StartsNowhere>(r, "starts_nowhere", "breaks diagnoser.restart",
                                "keeps its exclusions when it begins anew");
+  add_diagnoser<ForgetsExclusions>(r, "forgets_exclusions", "breaks diagnoser.saved_state",
+                                   "keeps its exclusions out of its saved state");
   add_diagnoser<TellsCorners>(r, "tells_corners", "breaks diagnoser.estimate",
                               "tells a corner of the estimate");
   add_diagnoser<TellsNoMode>(r, "tells_no_mode", "breaks diagnoser.decision",

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/registry/plugin.hpp"
 
 namespace component_mutants {
@@ -30,6 +31,7 @@ class Filter : public Observer {
     X_ = corrected(predicted(X_, before, now), now);
   }
   const Enclosure& held() const { return X_; }
+  void save(Archive& archive) { archive(X_); }
 
  protected:
   virtual Enclosure predicted(const Enclosure& X, const Sample& before, const Sample& /*now*/) {
@@ -63,6 +65,7 @@ class Filter : public Observer {
     return told(X_);
   }
   void do_replace(const Enclosure& X) override { X_ = X; }
+  void do_serialize(Archive& archive) override { archive.set(X_, model().states()); }
 
   Enclosure W_, V_, X_;
 };

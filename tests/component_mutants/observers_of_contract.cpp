@@ -19,6 +19,21 @@ class Remembers final : public Filter {
   bool started_ = false;
 };
 
+/// Widens every other estimate, and does not tell which one is next.
+class ForgetsTurn final : public Filter {
+  using Filter::Filter;
+  Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
+    turn_ = false;
+    return Filter::do_start(X0, first);
+  }
+  Enclosure told(const Enclosure& X) override {
+    turn_ = !turn_;
+    if (turn_) return X;
+    return backend().sum(X, backend().box({-Vector::Ones(X->dim()), Vector::Ones(X->dim())}));
+  }
+  bool turn_ = false;
+};
+
 /// All observers hold one set.
 class Shares final : public Filter {
   using Filter::Filter;
@@ -94,6 +109,8 @@ class LongEstimates final : public Filter {
 void add_observers_of_contract(Registrar& r) {
   add_observer<Remembers>(r, "remembers", "breaks observer.restart",
                           "widens what it begins anew from");
+  add_observer<ForgetsTurn>(r, "forgets_turn", "breaks observer.saved_state",
+                            "keeps a member out of its saved state");
   add_observer<Shares>(r, "shares", "breaks observer.independent",
                        "keeps its set in a place that all observers share");
   add_observer<ChangingLag>(r, "changing_lag", "breaks observer.lag", "lags after some samples");

@@ -56,6 +56,20 @@ class DependsOnHistory final : public Reference {
   }
 };
 
+/// The last generator is not written.
+class SavesLess final : public Reference {
+  using Reference::Reference;
+  std::unique_ptr<const Set> do_serialize(const Set* X, Archive& archive) const override {
+    LineForm own = X ? form(*X) : LineForm{};
+    if (const Index left = own.generators() - 1; left >= 0) {
+      own.G.conservativeResize(Eigen::NoChange, left);
+      own.A.conservativeResize(Eigen::NoChange, left);
+    }
+    archive(own);
+    return X ? nullptr : make(std::move(own));
+  }
+};
+
 class ThrowsOutOfRange final : public Reference {
   using Reference::Reference;
   Made do_convex_hull(const Set& X, const Set& Y) const override {
@@ -177,6 +191,7 @@ std::vector<Mutant> mutants_of_contract() {
       {"shared_scratch", "contract.threads", "threads share a buffer", create<SharedScratch>},
       {"depends_on_history", "contract.determinism", "every other result is larger",
        create<DependsOnHistory>},
+      {"saves_less", "contract.saved_sets", "a generator is not saved", create<SavesLess>},
       {"throws_out_of_range", "contract.only_cordon_errors",
        "throws an exception of the standard library", create<ThrowsOutOfRange>},
       {"throws_number", "contract.only_cordon_errors", "throws a number", create<ThrowsNumber>},

@@ -32,6 +32,11 @@ class Padded final : public Reference {
     if (fits(form(X), budget)) return {};
     return {std::make_unique<LineSet>(*this, boxed(form(X), budget)), Tightness::outer};
   }
+  std::unique_ptr<const Set> do_serialize(const Set* X, Archive& archive) const override {
+    LineForm own = X ? form(*X) : LineForm{};
+    archive(own);
+    return X ? nullptr : std::make_unique<LineSet>(*this, std::move(own));
+  }
 };
 
 /// Says unknown wherever that is allowed.

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "cordon/interfaces/archive.hpp"
 #include "cordon/interfaces/backend.hpp"
 #include "cordon/registry/schema.hpp"
 
@@ -65,6 +66,11 @@ class Reference : public SetBackend {
   Made do_intersection(const Set& X, MatrixIn R, const Set& Y) const override;
   Made do_convex_hull(const Set& X, const Set& Y) const override;
   Made do_reduce(const Set& X, Budget budget) const override;
+  std::unique_ptr<const Set> do_serialize(const Set* X, Archive& archive) const override {
+    LineForm own = X ? form(*X) : LineForm{};
+    archive(own);
+    return X ? nullptr : make(std::move(own));
+  }
 };
 
 /// The reference with another type of set.

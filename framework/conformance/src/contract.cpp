@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "cordon/interfaces/archive.hpp"
 #include "enclosure.hpp"
 #include "fingerprint.hpp"
 #include "law.hpp"
@@ -69,6 +70,37 @@ Verdict check_determinism(const Context& context, const TestCase& test) {
   if (verdict.failed()) return verdict;
   return compare(expected, outcomes(*context.subject.make(context.subject.params), test),
                  "on another backend with the same parameters");
+}
+
+/// As it is after it was written and read.
+Enclosure read_again(const std::shared_ptr<const SetBackend>& backend, Enclosure X) {
+  Archive writing(backend);
+  writing(X);
+  Archive reading(backend, writing.bytes());
+  Enclosure read;
+  reading(read);
+  reading.expect_end();
+  return read;
+}
+
+/// Of operands and results; a backend that does not save its sets refuses the case.
+Verdict check_saved_sets(const Context& context, const TestCase& test) {
+  const SetBackend& b = *context.backend;
+  const Enclosure X = b.import(test.set(0).form), Y = b.import(test.set(1).form);
+  const auto first = program(b, X, Y, test);
+  const auto then =
+      program(b, read_again(context.backend, X), read_again(context.backend, Y), test);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const auto result = attempt_operation(first[i].second);
+    const std::string text = fingerprint(result);
+    Verdict verdict = compare({text}, {fingerprint(attempt_operation(then[i].second))},
+                              "of operands that were saved and read (" + first[i].first + ")");
+    if (!verdict.failed() && result)
+      verdict = compare({text}, {fingerprint(std::optional(read_again(context.backend, *result)))},
+                        "after it was saved and read (" + first[i].first + ")");
+    if (verdict.failed()) return verdict;
+  }
+  return {};
 }
 
 /// Threads work on different operands at the same time, each on all of them in turn: what one
@@ -259,6 +291,12 @@ void add_contract(LawList& list) {
        check_determinism,
        {},
        0.5});
+  list.push_back({{"contract.saved_sets",
+                   "a set that was saved and read is the same, and gives the same bits"},
+                  generate_program,
+                  check_saved_sets,
+                  {},
+                  0.3});
   list.push_back({{"contract.parameters_documented",
                    "every parameter is documented, and every value that it allows works"},
                   one_box,

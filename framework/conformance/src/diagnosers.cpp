@@ -255,6 +255,38 @@ Verdict check_diagnoser_restart(const Context& context, const TestCase& test) {
   return compared(*trial, *other, all_modes(trial->bank), "after start()");
 }
 
+/// A diagnoser that does not offer its state refuses the case.
+Verdict check_saved_diagnoser(const Context& context, const TestCase& test) {
+  const auto trial = diagnoser_trial(context, test, course_of(test));
+  if (!trial) return Verdict::inapplicable();
+  const std::vector<Sample>& samples = trial->data.samples;
+  const std::vector<Index> modes = all_modes(trial->bank);
+  std::vector<std::string> first, saved;
+  for (const Sample& sample : samples) {
+    first.push_back(text_of(trial->diagnoser->step(sample), modes));
+    Archive archive(trial->backend.backend);
+    archive(*trial->diagnoser);
+    saved.push_back(archive.bytes());
+  }
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const auto other = made_for(context, *trial, trial->bank, trial->params);
+    Archive archive(trial->backend.backend, saved[k]);
+    archive(*other);
+    archive.expect_end();
+    for (std::size_t later = k + 1; later < samples.size(); ++later) {
+      const std::string then = text_of(other->step(samples[later]), modes);
+      if (then == first[later]) continue;
+      Verdict verdict =
+          trial->fails("another diagnosis at time " + std::to_string(samples[later].k) +
+                       " from the state of time " + std::to_string(samples[k].k));
+      verdict.derived.emplace_back("first", first[later]);
+      verdict.derived.emplace_back("then", then);
+      return verdict;
+    }
+  }
+  return {};
+}
+
 Verdict check_decision(const Context& context, const TestCase& test) {
   const auto trial = diagnoser_trial(context, test, course_of(test));
   if (!trial) return Verdict::inapplicable();
@@ -296,6 +328,9 @@ void add_diagnosers(LawList& list) {
   list.push_back(law_of(kind, "diagnoser.restart",
                         "after start() the same samples give the same diagnoses", bank_case,
                         check_diagnoser_restart, 0.1));
+  list.push_back(law_of(kind, "diagnoser.saved_state",
+                        "a diagnoser that goes on from a saved state gives the same diagnoses",
+                        bank_case, check_saved_diagnoser, 0.1));
 }
 
 }  // namespace cordon::conformance

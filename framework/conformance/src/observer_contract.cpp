@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cordon/core/error.hpp"
+#include "cordon/interfaces/archive.hpp"
 #include "estimates.hpp"
 #include "fingerprint.hpp"
 
@@ -64,6 +65,37 @@ Verdict check_independent(const Context& context, const TestCase& test) {
     then.push_back(text_of(one->step(trial->data.samples[k])));
   }
   return differs(*trial, first, then, "where another observer steps in between");
+}
+
+/// An observer that does not offer its state refuses the case.
+Verdict check_saved_state(const Context& context, const TestCase& test) {
+  const auto trial = observer_trial(context, test, test.seed % 2 == 1);
+  if (!trial) return Verdict::inapplicable();
+  const std::vector<Sample>& samples = trial->data.samples;
+  const auto first = texts_of(*trial->observer, samples);
+  const auto saving = another(context, *trial);
+  std::vector<std::string> then, saved;
+  for (const Sample& sample : samples) {
+    then.push_back(text_of(saving->step(sample)));
+    Archive archive(trial->backend.backend);
+    archive(*saving);
+    saved.push_back(archive.bytes());
+  }
+  if (Verdict verdict = differs(*trial, first, then, "where its state is saved"); verdict.failed())
+    return verdict;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const auto other = another(context, *trial);
+    Archive archive(trial->backend.backend, saved[k]);
+    archive(*other);
+    archive.expect_end();
+    for (std::size_t later = k + 1; later < samples.size(); ++later)
+      then[later] = text_of(other->step(samples[later]));
+    Verdict verdict = differs(
+        *trial, first, then,
+        "by an observer that goes on from the state of time " + std::to_string(samples[k].k));
+    if (verdict.failed()) return verdict;
+  }
+  return {};
 }
 
 Verdict check_lag(const Context& context, const TestCase& test) {
@@ -258,6 +290,9 @@ void add_observer_contract(LawList& list) {
   list.push_back(law_of(kind, "observer.independent",
                         "observers of one model do not disturb each other", observer_case,
                         check_independent, 0.1));
+  list.push_back(law_of(kind, "observer.saved_state",
+                        "an observer that goes on from a saved state gives the same bits",
+                        observer_case, check_saved_state, 0.1));
   list.push_back(law_of(kind, "observer.bad_samples",
                         "samples out of order, of other sizes or with NaN are refused, and change "
                         "nothing",
