@@ -3,6 +3,7 @@
 // box by sets of your own.
 #include <cordon/core/error.hpp>
 #include <cordon/core/rounding.hpp>
+#include <cordon/interfaces/archive.hpp>
 #include <cordon/registry/plugin.hpp>
 #include <cordon/solvers/set_questions.hpp>
 
@@ -14,6 +15,7 @@ using namespace cordon;
 class BoxSet final : public Set {
  public:
   BoxSet(const SetBackend& backend, Box box) : Set(backend, box.dim()), box_(std::move(box)) {}
+  const Box& box() const { return box_; }
 
  private:
   Complexity do_complexity() const override { return {dim(), 0, 0}; }
@@ -54,6 +56,15 @@ class BoxBackend final : public SetBackend {
       is_box = is_box && (X.G.col(j).array() != 0).count() <= 1;
     return {std::make_unique<BoxSet>(*this, std::move(hull)),
             is_box ? Tightness::exact : Tightness::outer};
+  }
+
+  /// The numbers of a set as they are, so that observers can go on from them after a restart.
+  std::unique_ptr<const Set> do_serialize(const Set* X, Archive& archive) const override {
+    Box box = X ? static_cast<const BoxSet*>(X)->box() : Box{};
+    archive(box);
+    if (X) return nullptr;
+    if (box.lower.hasNaN() || box.upper.hasNaN()) archive.refuse("a bound that is NaN");
+    return std::make_unique<BoxSet>(*this, std::move(box));
   }
 };
 

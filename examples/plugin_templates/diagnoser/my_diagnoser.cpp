@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A diagnoser as a plugin: an observer per mode, a mode is excluded when its estimate is proven
 // empty. Start from here and replace the decision by your own.
+#include <cordon/interfaces/archive.hpp>
 #include <cordon/registry/plugin.hpp>
 
 namespace {
@@ -50,6 +51,16 @@ class MyDiagnoser final : public Diagnoser {
     diagnosis.estimate.reset();
     diagnosis.decision = left.empty() ? Decision::unknown_fault : Decision::isolating;
     return diagnosis;
+  }
+
+  /// What later steps depend on, to go on from after a restart of the program.
+  void do_serialize(Archive& archive) override {
+    archive(since_);
+    for (std::size_t j = 0; j < observers_.size(); ++j) {
+      bool excluded = excluded_[j];
+      archive(*observers_[j], excluded);
+      excluded_[j] = excluded;
+    }
   }
 
   std::vector<std::shared_ptr<Observer>> observers_;

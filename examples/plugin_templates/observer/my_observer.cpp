@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An observer as a plugin: prediction by the model, correction by the outputs, on any backend.
 // Start from here and replace the recursion by your own.
+#include <cordon/interfaces/archive.hpp>
 #include <cordon/registry/plugin.hpp>
 
 namespace {
@@ -31,6 +32,8 @@ class MyObserver final : public Observer {
     return X_ = corrected(predicted, now);
   }
   void do_replace(const Enclosure& X) override { X_ = X; }
+  /// What later steps depend on, to go on from after a restart of the program.
+  void do_serialize(Archive& archive) override { archive.set(X_, model().states()); }
 
   /// {x ∈ X : y - D u - C x ∈ Dv V}, within the budget.
   Enclosure corrected(const Enclosure& X, const Sample& now) {
