@@ -12,23 +12,25 @@ using namespace online_test;
 TEST_CASE("a JSON line is a sample") {
   Loaded loaded;
   SampleLines lines(loaded.study);
-  const auto sample = lines.read(R"({"k": 7, "u": [0.5], "y": [1.25, null]})"
-                                 "\r\n");
+  const auto sample = lines
+                          .read(R"({"k": 7, "u": [0.5], "y": [1.25, null]})"
+                                "\r\n")
+                          .sample;
   REQUIRE(sample);
   CHECK(sample->k == 7);
   CHECK(sample->u[0] == 0.5);
   CHECK(sample->y[0] == 1.25);
   CHECK(std::isnan(sample->y[1]));
-  CHECK_FALSE(lines.read("  \n"));
-  CHECK(std::isnan(lines.read(R"({"u": [1]})")->y[0]));
-  CHECK_FALSE(lines.read(R"({"u": [1], "y": null})")->k);
+  CHECK_FALSE(lines.read("  \n").sample);
+  CHECK(std::isnan(lines.read(R"({"u": [1]})").sample->y[0]));
+  CHECK_FALSE(lines.read(R"({"u": [1], "y": null})").sample->k);
 }
 
 TEST_CASE("rows of a CSV file are samples, by the names of its columns") {
   Loaded loaded;
   SampleLines lines(loaded.study);
-  CHECK_FALSE(lines.read("\xEF\xBB\xBFtime,k,y_2,u_1,\"y_1\"\n"));
-  const auto sample = lines.read("0.5,3, 2.5 ,-1,nan\n");
+  CHECK_FALSE(lines.read("\xEF\xBB\xBFtime,k,y_2,u_1,\"y_1\"\n").sample);
+  const auto sample = lines.read("0.5,3, 2.5 ,-1,nan\n").sample;
   REQUIRE(sample);
   CHECK(sample->k == 3);
   CHECK(sample->u[0] == -1);
@@ -53,6 +55,16 @@ TEST_CASE("all that is wrong with a line is told at once") {
   CHECK_THROWS_AS(lines.read(std::string(2'000'000, ' ') + "{" + std::string(2'000'000, 'x')),
                   InputError);
   CHECK_THROWS_AS(lines.read("{" + std::string(100'000, '[')), InputError);
+}
+
+TEST_CASE("requests stand between samples") {
+  Loaded loaded;
+  SampleLines lines(loaded.study);
+  CHECK(lines.read(R"({"do": "acknowledge"})").request == Request::acknowledge);
+  CHECK(lines.read(R"({"do": "start"})").request == Request::start);
+  CHECK_THROWS_WITH_AS(lines.read(R"({"do": "acknowlege"})"), doctest::Contains("acknowledge"),
+                       InputError);
+  CHECK_THROWS_AS(lines.read(R"({"do": "start", "u": [0]})"), InputError);
 }
 
 TEST_CASE("mutated lines are samples or refused, and a session goes on after them") {
@@ -83,7 +95,7 @@ TEST_CASE("mutated lines are samples or refused, and a session goes on after the
     }
     if (line.front() != '{') continue;  // else a header of a CSV file
     try {
-      const auto sample = lines.read(line);
+      const auto sample = lines.read(line).sample;
       if (sample) session.take(*sample);
       ++taken;
     } catch (const Error&) {
@@ -94,5 +106,5 @@ TEST_CASE("mutated lines are samples or refused, and a session goes on after the
   CHECK(taken > 1000);
   CHECK(refused > 1000);
   session.start();
-  CHECK(session.take(*lines.read(valid)).how == Taken::How::taken);
+  CHECK(session.take(*lines.read(valid).sample).how == Taken::How::taken);
 }

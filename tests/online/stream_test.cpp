@@ -101,14 +101,128 @@ TEST_CASE("SIGTERM ends a stream after the sample at hand") {
   const std::string out = (scratch / "out").string();
   const std::string in = (scratch / "in").string();
   const std::string feed = "{ echo '{\"u\": [0], \"y\": [0, 0]}'; exec sleep 30; } > " + in;
-  const std::string wait = "for i in 1 2 3 4 5 6 7 8 9 10; do sleep 0.2; [ -s " + out +
-                           " ] && break; done";
-  const test::Outcome outcome = cordon_with(
-      "stream " + study.string() + " --pipeline zonotope < " + in + " > " + out +
-          " & stream=$!; " + feed + " & feeder=$!; " + wait +
-          "; kill -TERM $stream; wait $stream; code=$?; kill $feeder; exit $code",
-      "true; mkfifo " + in + ";");
+  const std::string wait =
+      "for i in 1 2 3 4 5 6 7 8 9 10; do sleep 0.2; [ -s " + out + " ] && break; done";
+  const test::Outcome outcome =
+      cordon_with("stream " + study.string() + " --pipeline zonotope < " + in + " > " + out +
+                      " & stream=$!; " + feed + " & feeder=$!; " + wait +
+                      "; kill -TERM $stream; wait $stream; code=$?; kill $feeder; exit $code",
+                  "true; mkfifo " + in + ";");
   CHECK(outcome.code == 0);
   CHECK(outcome.complains("1 sample"));
   CHECK(bytes_of(out).find("\"k\": 0") != std::string::npos);
+}
+
+namespace {
+
+/// The samples of a plant that leaks from k = 40 on, with a request in between.
+std::string leaking() {
+  LeakyPlant plant;
+  std::string text;
+  for (Index k = 0; k < 80; ++k) {
+    const GivenSample sample = plant.next(k >= 40);
+    text += "{\"k\": " + std::to_string(k) + ", \"u\": [" + nlohmann::json(sample.u[0]).dump() +
+            "], \"y\": [" + nlohmann::json(sample.y[0]).dump() + ", " +
+            nlohmann::json(sample.y[1]).dump() + "]}\n";
+    if (k == 60) text += "{\"do\": \"acknowledge\"}\n";
+  }
+  return text;
+}
+
+std::size_t lines_with(const std::string& text, const std::string& what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1))
+    ++count;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("a log is replayed to the same alarms, and one that was changed is told") {
+  const Scratch scratch;
+  const std::string study = scratch.write("study.json", study_text()).string();
+  const std::string input = scratch.write("input", leaking()).string();
+  const std::string log = (scratch / "log").string();
+  const std::string stream = "stream " + study + " --pipeline bank ";
+  const test::Outcome first = cordon_with(stream + "--log " + log + " < " + input);
+  CHECK(first.code == 0);
+  CHECK(lines_with(bytes_of(log), "{\"alarm\"") >= 2);
+  const test::Outcome replayed = cordon_with(stream + "--replay " + log);
+  CHECK(replayed.code == 0);
+  CHECK(replayed.out == first.out);
+  CHECK(cordon_with(stream + "--log " + log + " < " + input).complains("exists already"));
+
+  std::string changed = bytes_of(log);
+  changed.replace(changed.find("\"raised_at\": 4"), 14, "\"raised_at\": 9");
+  const test::Outcome other =
+      cordon_with(stream + "--replay " + scratch.write("changed", changed).string());
+  CHECK(other.code == 4);
+  CHECK(other.complains("not those of the log"));
+  CHECK(cordon_with(stream + "--replay " + study).complains("is no log"));
+  CHECK(cordon_with("stream " + study + " --pipeline zonotope --replay " + log)
+            .complains("another pipeline"));
+}
+
+TEST_CASE("a stream that is killed goes on from its checkpoint, with no alarm lost or doubled") {
+  const Scratch scratch;
+  const std::string study = scratch.write("study.json", study_text()).string();
+  const std::string all = leaking(), log = (scratch / "log").string();
+  const std::string stream = "stream " + study + " --pipeline bank --quiet ";
+  const test::Outcome whole =
+      cordon_with(stream + "--log " + log + ".whole < " + scratch.write("all", all).string());
+  for (const std::size_t until : {5, 37, 43, 60, 61, 62, 79}) {
+    CAPTURE(until);
+    const std::string checkpoint = (scratch / "state").string();
+    std::size_t end = 0;
+    for (std::size_t line = 0; line < until; ++line) end = all.find('\n', end) + 1;
+    const std::string options =
+        stream + "--every 7 --checkpoint " + checkpoint + " --log " + log + " < ";
+    // Killed while it waits for more.
+    const std::string begun = scratch.write("begun", all.substr(0, end)).string();
+    const std::string in = (scratch / "in").string(), out = (scratch / "out").string();
+    cordon_with(options + in + " > " + out + " & stream=$!; { cat " + begun +
+                    "; exec sleep 30; } > " + in +
+                    " & feeder=$!; for i in 1 2 3 4 5 6 7 8 9; do sleep 0.1; [ $(wc -l < " + out +
+                    ") -ge " + std::to_string(until) +
+                    " ] && break; done; kill -KILL $stream; kill $feeder; wait",
+                "true; rm -f " + in + "; mkfifo " + in + ";");
+    const std::string before = bytes_of(out);
+    // The plant sends again what has come since the checkpoint.
+    const test::Outcome probe = cordon_with(stream + "--checkpoint " + checkpoint + " < /dev/null");
+    std::size_t next = 0;
+    if (!probe.out.empty()) next = nlohmann::json::parse(probe.out)["next"];
+    const std::size_t from = all.find("{\"k\": " + std::to_string(next) + ",");
+    const std::string rest = scratch.write("rest", all.substr(from)).string();
+    const test::Outcome after = cordon_with(options + rest);
+    REQUIRE(after.code == 0);
+    const std::string lines = next == 0 ? after.out : after.out.substr(after.out.find('\n') + 1);
+    CHECK(whole.out.ends_with(lines));
+    CHECK(whole.out.starts_with(before));
+    CHECK(lines.size() + before.size() >= whole.out.size());
+    CHECK(bytes_of(log) == bytes_of(log + ".whole"));
+    std::filesystem::remove(checkpoint);
+    std::filesystem::remove(log);
+  }
+}
+
+TEST_CASE("a checkpoint that is damaged, or another file, is refused") {
+  const Scratch scratch;
+  const std::string study = scratch.write("study.json", study_text()).string();
+  const std::string state = (scratch / "state").string();
+  const std::string stream = "stream " + study + " --checkpoint " + state + " --pipeline ";
+  CHECK(
+      cordon_with(stream + "zonotope < " + scratch.write("some", "{\"u\": [0]}\n").string()).code ==
+      0);
+  const std::string saved = bytes_of(state);
+  for (const std::size_t at : {3, 25, 60}) {
+    std::string damaged = saved;
+    damaged[at] = static_cast<char>(damaged[at] ^ 1);
+    scratch.write("state", damaged);
+    const test::Outcome outcome = cordon_with(stream + "zonotope < /dev/null");
+    CHECK(outcome.code == 2);
+    CHECK(bytes_of(state) == damaged);
+  }
+  scratch.write("state", saved);
+  CHECK(cordon_with(stream + "interval < /dev/null").code == 2);
+  CHECK(cordon_with(stream + "zonotope < /dev/null").says("\"next\": 1"));
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Steps of a session as the files of a run have them.
+#include "cordon/study/alarms.hpp"
 #include "cordon/study/online.hpp"
 #include "study/results/diagnosis_json.hpp"
+#include "study/results/results_parts.hpp"
 #include "study/results/step_json.hpp"
 #include "study/text/string_sink.hpp"
 
@@ -34,6 +36,23 @@ std::string events_json_of(const std::vector<DiagnosisEvent>& events,
   json.begin_array();
   for (const DiagnosisEvent& event : events) detail::write(json, event, modes);
   json.end_array();
+  return std::move(text.text);
+}
+
+std::string json_of(const AlarmChange& change) {
+  detail::StringSink text;
+  detail::JsonWriter json(text);
+  const Alarm& alarm = change.alarm;
+  json.begin_object().member("what", to_string(change.what)).member("k", change.k);
+  json.member("cause", to_string(alarm.cause)).member("raised_at", alarm.raised_at);
+  json.member("since", alarm.since).member("times", alarm.times);
+  json.member("active", alarm.is_active).member("acknowledged", alarm.acknowledged);
+  json.member("text", alarm.text);
+  if (alarm.proof.kind != Certificate::Kind::none) {
+    json.key("proof");
+    detail::write(json, alarm.proof);
+  }
+  json.end_object();
   return std::move(text.text);
 }
 

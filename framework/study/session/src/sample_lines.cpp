@@ -67,22 +67,22 @@ class SampleLines::Reader {
     y_ = columns_of("y", outputs_, study.labels.outputs, recorded ? recorded->outputs : none);
   }
 
-  std::optional<GivenSample> read(std::string_view line) {
+  GivenLine read(std::string_view line) {
     const std::string_view text = trimmed(line);
-    if (text.empty()) return std::nullopt;
+    if (text.empty()) return {};
     Problems problems;
-    std::optional<GivenSample> sample;
+    GivenLine given;
     if (text.size() > most_bytes) {
       problems.add("", 0, "the line is longer than 1 MiB", "a line is one sample");
     } else if (text.front() == '{') {
-      sample = from_json(text, problems);
+      given = from_json(text, problems);
     } else if (header_) {
-      sample = from_row(text, problems);
+      given.sample = from_row(text, problems);
     } else {
       read_header(text, problems);
     }
     if (problems.any()) throw InputError("sample", problems.sorted());
-    return sample;
+    return given;
   }
 
  private:
@@ -106,19 +106,27 @@ class SampleLines::Reader {
     return columns;
   }
 
-  std::optional<GivenSample> from_json(std::string_view text, Problems& problems) const {
+  GivenLine from_json(std::string_view text, Problems& problems) const {
     const Value tree = json::parse(text, problems);
     const Cursor root(tree, "", problems);
     if (problems.any() || !root.expect(Value::Kind::object, "write {\"u\": [...], \"y\": [...]}"))
-      return std::nullopt;
-    root.expect_keys({"k", "u", "y"}, "member", "a sample has \"k\", \"u\" and \"y\"");
+      return {};
+    if (root.find("do")) return {std::nullopt, request_of(root)};
+    root.expect_keys({"k", "u", "y", "do"}, "member", "a sample has \"k\", \"u\" and \"y\"");
     GivenSample sample;
     if (const auto k = root.find("k")) {
       if (const auto number = json::read_integer(*k, 0, json::max_integer)) sample.k = *number;
     }
     sample.u = numbers(root, "u", inputs_, false);
     sample.y = numbers(root, "y", outputs_, true);
-    return sample;
+    return {std::move(sample), std::nullopt};
+  }
+
+  static std::optional<Request> request_of(const Cursor& root) {
+    root.expect_keys({"do"}, "member", "a request has \"do\" alone");
+    const auto choice = json::read_choice(*root.find("do"), {"acknowledge", "start"});
+    if (!choice) return std::nullopt;
+    return *choice == "acknowledge" ? Request::acknowledge : Request::start;
   }
 
   /// Outputs may be null, and so may be the list of all of them.
@@ -233,6 +241,6 @@ SampleLines::SampleLines(const Study& study) : reader_(std::make_unique<Reader>(
 SampleLines::~SampleLines() = default;
 SampleLines::SampleLines(SampleLines&&) noexcept = default;
 SampleLines& SampleLines::operator=(SampleLines&&) noexcept = default;
-std::optional<GivenSample> SampleLines::read(std::string_view line) { return reader_->read(line); }
+GivenLine SampleLines::read(std::string_view line) { return reader_->read(line); }
 
 }  // namespace cordon

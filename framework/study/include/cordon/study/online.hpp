@@ -70,8 +70,19 @@ class OnlineSession {
   std::unique_ptr<Intake> intake_;
 };
 
-/// Reads lines: JSON objects {"k": 3, "u": [0.5], "y": [1.2, null]}, or rows of a CSV file with a
-/// header row. Members and columns: docs/online.md.
+/// What somebody asks for between samples.
+enum class Request {
+  acknowledge,  ///< of all alarms that stand
+  start         ///< to begin anew
+};
+/// One of the two.
+struct GivenLine {
+  std::optional<GivenSample> sample = {};
+  std::optional<Request> request = {};
+};
+
+/// Reads lines: JSON objects {"k": 3, "u": [0.5], "y": [1.2, null]} and {"do": "acknowledge"}, or
+/// rows of a CSV file with a header row. Members and columns: docs/online.md.
 class SampleLines {
  public:
   explicit SampleLines(const Study& study);
@@ -79,9 +90,9 @@ class SampleLines {
   SampleLines(SampleLines&&) noexcept;
   SampleLines& operator=(SampleLines&&) noexcept;
 
-  /// The sample in the line, whose end may be part of it; nothing: the header, or an empty line.
-  /// Throws InputError with all that is wrong with it.
-  std::optional<GivenSample> read(std::string_view line);
+  /// What the line holds, whose end may be part of it; neither of the two: the header, or an empty
+  /// line. Throws InputError with all that is wrong with it.
+  GivenLine read(std::string_view line);
 
  private:
   class Reader;

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stream_lines.hpp"
+
+#include <fmt/format.h>
+
+#include "study/text/json_writer.hpp"
+#include "study/text/string_sink.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+/// An open object that ends with its line.
+class Line {
+ public:
+  Line() { json_.begin_object(); }
+  detail::JsonWriter& json() { return json_; }
+  std::string text() {
+    json_.end_object();
+    return std::move(sink_.text) + "\n";
+  }
+
+ private:
+  detail::StringSink sink_;
+  detail::JsonWriter json_{sink_};
+};
+
+std::string list_of(const std::vector<AlarmChange>& alarms) {
+  std::string text = "[";
+  for (const AlarmChange& change : alarms) text += (text.size() > 1 ? ", " : "") + json_of(change);
+  return text + "]";
+}
+
+std::string_view name_of(Request request) {
+  return request == Request::acknowledge ? "acknowledge" : "start";
+}
+
+}  // namespace
+
+std::string line_of(const SessionStep& step, const std::vector<AlarmChange>& alarms,
+                    const Session& session, bool with_set) {
+  std::string text;
+  const EstimateStep* const estimate = step.estimate ? &*step.estimate : nullptr;
+  if (estimate && !estimate->is_last) {
+    text = fmt::format("{{\"k\": null, \"sample\": {}", step.k);
+  } else {
+    text = json_of(step, session.modes());
+    text.pop_back();
+    if (estimate && estimate->estimate.k != step.k) text += fmt::format(", \"sample\": {}", step.k);
+    if (with_set && estimate) text += ", \"set\": " + set_json_of(*estimate, session.name());
+  }
+  if (step.diagnosis && !step.diagnosis->events.empty())
+    text += ", \"events\": " + events_json_of(step.diagnosis->events, session.modes());
+  if (estimate && estimate->restarted) text += ", \"restarted\": true";
+  if (estimate && !estimate->not_enclosed.empty())
+    text += ", \"not_enclosed\": " + detail::json_string(estimate->not_enclosed);
+  if (!alarms.empty()) text += ", \"alarms\": " + list_of(alarms);
+  return text + "}\n";
+}
+
+std::string line_of(const Taken& taken, std::int64_t number) {
+  Line line;
+  line.json().member("how", to_string(taken.how)).member("said", taken.said);
+  line.json().member("line", number);
+  return line.text();
+}
+
+std::string line_of(Request request, const std::vector<AlarmChange>& alarms) {
+  Line line;
+  line.json().member("did", name_of(request)).key("alarms").raw(list_of(alarms));
+  return line.text();
+}
+
+std::string error_line(const Error& error, std::int64_t number) {
+  std::string what = error.what();
+  if (const auto* input = dynamic_cast<const InputError*>(&error)) {
+    what.clear();
+    for (const Diagnostic& problem : input->diagnostics()) {
+      if (!what.empty()) what += "; ";
+      what += (problem.pointer.empty() ? "" : problem.pointer + ": ") + problem.message;
+      if (!problem.suggestion.empty()) what += " (" + problem.suggestion + ")";
+    }
+  }
+  Line line;
+  line.json().member("error", what);
+  if (number > 0) line.json().member("line", number);
+  return line.text();
+}
+
+std::string log_line(const GivenLine& given) {
+  Line line;
+  if (given.request) line.json().member("do", name_of(*given.request));
+  if (given.sample) {
+    if (given.sample->k) line.json().member("k", *given.sample->k);
+    line.json().member("u", given.sample->u).member("y", given.sample->y);
+  }
+  return line.text();
+}
+
+std::string log_line(const AlarmChange& change) {
+  Line line;
+  line.json().key("alarm").raw(json_of(change));
+  return line.text();
+}
+
+}  // namespace cordon::apps

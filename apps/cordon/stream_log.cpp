@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stream_log.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "cordon/core/error.hpp"
+#include "study/text/json_writer.hpp"
+#include "study/text/publish.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+constexpr std::string_view before_alarm = "{\"alarm\": ";
+
+std::string head_of(const std::string& pipeline) {
+  return "{\"cordon_log\": 1, \"pipeline\": " + detail::json_string(pipeline) + "}";
+}
+
+}  // namespace
+
+StreamLog::StreamLog(std::filesystem::path file, const std::string& pipeline, std::int64_t keep)
+    : file_(std::move(file)) {
+  if (keep == 0 && detail::is_there(file_)) {
+    throw InputError(file_.string(), {{"", "exists already",
+                                       "name another file for the log, or move this one away"}});
+  }
+  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  const bool is_long_enough =
+      descriptor_ >= 0 && (keep == 0 || ::lseek(descriptor_, 0, SEEK_END) >= keep);
+  if (descriptor_ >= 0 && !is_long_enough) {
+    ::close(descriptor_);
+    throw InputError(file_.string(), {{"", "is shorter than it was at the checkpoint",
+                                       "name the log that belongs to it"}});
+  }
+  if (descriptor_ < 0 || ::ftruncate(descriptor_, keep) != 0)
+    throw Error(Errc::io, fmt::format("{}: {}", file_.string(), std::strerror(errno)));
+  bytes_ = keep;
+  if (keep == 0) write(head_of(pipeline) + "\n");
+}
+
+StreamLog::~StreamLog() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void StreamLog::write(const std::string& line) {
+  std::size_t done = 0;
+  while (done < line.size()) {
+    const ssize_t count = ::write(descriptor_, line.data() + done, line.size() - done);
+    if (count >= 0) {
+      done += static_cast<std::size_t>(count);
+    } else if (errno != EINTR) {
+      const int reason = errno;
+      [[maybe_unused]] const int cut = ::ftruncate(descriptor_, bytes_);
+      throw Error(Errc::io, fmt::format("{}: {}", file_.string(), std::strerror(reason)));
+    }
+  }
+  bytes_ += static_cast<std::int64_t>(line.size());
+}
+
+void StreamLog::flush() {
+  if (::fdatasync(descriptor_) != 0 && errno != EINVAL)
+    throw Error(Errc::io, fmt::format("{}: {}", file_.string(), std::strerror(errno)));
+}
+
+bool ReplayedLog::is_alarm(const std::string& line) { return line.starts_with(before_alarm); }
+
+std::string ReplayedLog::alarm_in(const std::string& line) {
+  return line.substr(before_alarm.size(), line.size() - before_alarm.size() - 1);
+}
+
+ReplayedLog::ReplayedLog(const std::filesystem::path& file, const std::string& pipeline)
+    : stream_(file, std::ios::binary) {
+  std::string first;
+  if (!stream_ || !std::getline(stream_, first) || !first.starts_with("{\"cordon_log\": 1, "))
+    throw InputError(file.string(),
+                     {{"", "is no log of a stream", "name a file that \"--log\" has written"}});
+  if (first != head_of(pipeline))
+    throw InputError(file.string(), {{"", "is the log of another pipeline: " + first,
+                                      "name that pipeline by \"--pipeline\""}});
+}
+
+bool ReplayedLog::next(std::string& line) {
+  while (std::getline(stream_, line)) {
+    if (!is_alarm(line)) return true;
+    expected_.push_back(alarm_in(line));
+  }
+  return false;
+}
+
+void ReplayedLog::compare(const std::string& alarm) {
+  // Those of a sample stand behind it in the log.
+  std::string line;
+  while (at_ >= expected_.size()) {
+    const auto place = stream_.tellg();
+    if (!std::getline(stream_, line)) break;
+    if (!is_alarm(line)) {
+      stream_.seekg(place);
+      break;
+    }
+    expected_.push_back(alarm_in(line));
+  }
+  if (at_ < expected_.size() && expected_[at_] == alarm) {
+    ++agreed_;
+  } else {
+    ++others_;
+    if (first_difference_.empty()) first_difference_ = alarm;
+  }
+  ++at_;
+}
+
+std::vector<std::string> ReplayedLog::differences() const {
+  std::vector<std::string> found;
+  if (others_ > 0)
+    found.push_back(fmt::format("{} alarm changes are not those of the log; the first: {}", others_,
+                                first_difference_));
+  if (at_ < expected_.size())
+    found.push_back(
+        fmt::format("{} alarm changes of the log have not come again", expected_.size() - at_));
+  return found;
+}
+
+}  // namespace cordon::apps

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stream_loop.hpp"
+
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "common.hpp"
+#include "stream_lines.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+/// Not an error of a component, after which there is no state to go on from.
+bool is_of_the_line(const Error& error) {
+  return error.code() == Errc::invalid || error.code() == Errc::dimension ||
+         error.code() == Errc::not_finite;
+}
+
+}  // namespace
+
+StreamLoop::StreamLoop(const Study& study, const Registry& registry,
+                       const StreamArguments& arguments, const std::atomic<bool>* stop)
+    : arguments_(arguments),
+      session_(study, registry, arguments.pipeline),
+      alarms_(study, session_.session()),
+      lines_(study),
+      input_(STDIN_FILENO, stop),
+      output_(STDOUT_FILENO, stop),
+      checkpoint_(arguments.checkpoint) {
+  session_.session().prove_hulls(arguments.sets);
+  if (!arguments.replay.empty()) replayed_.emplace(arguments.replay, session_.session().name());
+}
+
+bool StreamLoop::restore() {
+  if (arguments_.checkpoint.empty()) return true;
+  const std::optional<CheckpointState> state = checkpoint_.read();
+  if (state) {
+    session_.restore(state->session);
+    state->restore(alarms_);
+  } else {
+    session_.save();  // whoever cannot be saved is told so at once
+  }
+  if (!arguments_.log.empty())
+    log_.emplace(arguments_.log, session_.session().name(), state ? state->log_bytes : 0);
+  if (!state) return true;
+  const Index next = session_.session().last().value_or(-1) + 1;
+  return output_.write(fmt::format("{{\"restored\": true, \"next\": {}}}\n", next));
+}
+
+void StreamLoop::run() {
+  if (!restore()) return;
+  if (!arguments_.log.empty() && !log_) log_.emplace(arguments_.log, session_.session().name(), 0);
+  const Clock::time_point begin = Clock::now();
+  std::string line;
+  while (replayed_ ? replayed_->next(line) : input_.next(line)) {
+    ++line_;
+    if (!answer(line)) break;
+    if (!arguments_.checkpoint.empty() && since_checkpoint_ >= arguments_.every) save();
+  }
+  wall_s_ = std::chrono::duration<double>(Clock::now() - begin).count();
+  if (!arguments_.checkpoint.empty()) save();
+  if (replayed_) complaints_ = replayed_->differences();
+}
+
+template <class Work>
+void StreamLoop::written(const char* what, Work&& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    if (error.code() != Errc::io) throw;
+    if (unwritten_++ == 0) warn(fmt::format("{}: {}; the stream goes on", what, error.what()));
+  }
+}
+
+void StreamLoop::save() {
+  since_checkpoint_ = 0;
+  written("the checkpoint was not written", [&] {
+    if (log_) log_->flush();
+    checkpoint_.write(session_.save(), alarms_, log_ ? log_->bytes() : 0);
+  });
+}
+
+bool StreamLoop::answer(const std::string& line) {
+  const Clock::time_point begin = Clock::now();
+  std::string text;
+  try {
+    const GivenLine given = lines_.read(line);
+    if (!given.sample && !given.request) return true;
+    text = answer_to(given);
+    if (given.sample) ++since_checkpoint_;
+  } catch (const Error& error) {
+    if (session_.session().has_ended() || !is_of_the_line(error)) throw;
+    ++refused_;
+    text = error_line(error, line_);
+  }
+  if (!output_.write(text)) return false;
+  latency_us_.add(std::chrono::duration<double, std::micro>(Clock::now() - begin).count());
+  return true;
+}
+
+std::string StreamLoop::answer_to(const GivenLine& given) {
+  std::string text;
+  std::vector<AlarmChange> changes;
+  if (given.request == Request::acknowledge) {
+    changes = alarms_.acknowledge();
+    text = line_of(*given.request, changes);
+  } else if (given.request) {
+    session_.start();
+    text = line_of(*given.request, {});
+  }
+  std::optional<Taken> taken;
+  if (given.sample) taken = session_.take(*given.sample);
+  if (log_) written("the log was not written", [&] { log_->write(log_line(given)); });
+  keep(changes);
+  return taken ? answer_to(*taken) : text;
+}
+
+std::string StreamLoop::answer_to(const Taken& taken) {
+  std::string text;
+  if (taken.how != Taken::How::taken) text = line_of(taken, line_);
+  for (const SessionStep& step : taken.steps) {
+    const std::vector<AlarmChange> changes = alarms_.step(step);
+    keep(changes);
+    text += line_of(step, changes, session_.session(), arguments_.sets);
+  }
+  return text;
+}
+
+void StreamLoop::keep(const std::vector<AlarmChange>& changes) {
+  for (const AlarmChange& change : changes) {
+    if (replayed_) replayed_->compare(json_of(change));
+    if (log_) written("the log was not written", [&] { log_->write(log_line(change)); });
+  }
+}
+
+std::string StreamLoop::summary() const {
+  const TakenCounts& counts = session_.counts();
+  const std::int64_t samples = counts.taken + counts.filled;
+  std::string text = count(samples, "sample") + fmt::format(" in {:.1f} s", wall_s_);
+  const auto add = [&](std::int64_t number, const char* what) {
+    if (number > 0) text += fmt::format(", {} {}", number, what);
+  };
+  add(refused_, "refused");
+  add(counts.filled_steps, "times filled");
+  add(counts.corrected, "corrected");
+  add(counts.late, "late");
+  add(counts.repeated, "repeated");
+  add(unwritten_, "not written");
+  add(static_cast<std::int64_t>(alarms_.standing().size()), "alarms stand");
+  if (replayed_) text += fmt::format(", {} alarm changes as in the log", replayed_->agreed());
+  if (samples == 0) return text;
+  return text + fmt::format("\nline to line: median {:.1f} µs, 99 % {:.1f} µs, largest {:.1f} µs",
+                            latency_us_.median(), latency_us_.quantile(0.99),
+                            latency_us_.largest());
+}
+
+}  // namespace cordon::apps

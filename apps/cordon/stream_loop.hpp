@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lines of standard input, or of a log, through a session.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cordon/study/alarms.hpp"
+#include "cordon/study/online.hpp"
+#include "line_pipe.hpp"
+#include "stream_checkpoint.hpp"
+#include "stream_log.hpp"
+#include "study/results/quantiles.hpp"
+
+namespace cordon::apps {
+
+struct StreamArguments {
+  std::filesystem::path study;
+  std::string pipeline;
+  std::vector<std::string> settings;
+  std::filesystem::path checkpoint, log, replay;  ///< empty: none
+  std::int64_t every = 100;
+  bool sets = false, quiet = false;
+};
+
+class StreamLoop {
+ public:
+  /// What the arguments name lives longer.
+  StreamLoop(const Study& study, const Registry& registry, const StreamArguments& arguments,
+             const std::atomic<bool>* stop);
+
+  /// Until the lines end, nobody reads on, or a signal comes. Throws the errors of components.
+  void run();
+  /// Counts and times, for people.
+  std::string summary() const;
+  /// Of a log: alarms that are not those in it.
+  const std::vector<std::string>& complaints() const { return complaints_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool restore();
+  /// False: nobody reads on, or a signal came.
+  bool answer(const std::string& line);
+  std::string answer_to(const GivenLine& given);
+  std::string answer_to(const Taken& taken);
+  void keep(const std::vector<AlarmChange>& changes);
+  /// What could not be written is said, and the stream goes on.
+  template <class Work>
+  void written(const char* what, Work&& work);
+  void save();
+
+  const StreamArguments& arguments_;
+  OnlineSession session_;
+  Alarms alarms_;
+  SampleLines lines_;
+  LineInput input_;
+  LineOutput output_;
+  std::optional<StreamLog> log_;
+  std::optional<ReplayedLog> replayed_;
+  Checkpoint checkpoint_;
+  detail::Quantiles latency_us_;
+  std::int64_t line_ = 0, refused_ = 0, since_checkpoint_ = 0, unwritten_ = 0;
+  std::vector<std::string> complaints_;
+  double wall_s_ = 0;
+};
+
+}  // namespace cordon::apps

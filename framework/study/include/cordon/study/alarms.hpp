@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Alarms: what a session has proven to be wrong, kept until somebody has taken note of it
+// (docs/online.md).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cordon/study/session.hpp"
+
+namespace cordon {
+
+/// What is proven to be wrong.
+enum class AlarmCause {
+  contradiction,  ///< no state explains the samples: the estimate is proven empty
+  outlier,        ///< outputs missed the prediction, and were left out
+  fault           ///< the nominal mode is excluded
+};
+std::string_view to_string(AlarmCause cause) noexcept;
+
+/// An alarm stands from the sample that has raised it until it is acknowledged and its cause is
+/// gone, whichever comes last.
+struct Alarm {
+  AlarmCause cause = AlarmCause::fault;
+  Index raised_at = 0;     ///< k of the sample
+  Index since = 0;         ///< first time that the evidence speaks of
+  std::int64_t times = 1;  ///< that the cause has come while the alarm stood
+  bool is_active = true;   ///< does the cause last?
+  bool acknowledged = false;
+  std::string text;        ///< in words: what, since when, and by what evidence
+  Certificate proof = {};  ///< of the sample that has raised it, as its decision has it
+};
+
+/// What has become of an alarm.
+struct AlarmChange {
+  enum class What {
+    raised,        ///< it stands from now on
+    again,         ///< its cause has come again
+    specified,     ///< more is known of it: `text` is another
+    passed,        ///< its cause is gone; it stands until it is acknowledged
+    acknowledged,  ///< somebody has taken note; it stands while its cause lasts
+    gone           ///< it stands no longer
+  };
+  What what = What::raised;
+  Index k = 0;  ///< of the sample, or of the one before
+  Alarm alarm;  ///< as it is now
+};
+std::string_view to_string(AlarmChange::What what) noexcept;
+
+/// The alarms of one pipeline; of each cause one stands at most.
+class Alarms {
+ public:
+  Alarms(const Study& study, const Session& session);
+  Alarms(const Alarms&) = default;
+  Alarms& operator=(const Alarms&) = default;
+
+  /// Steps come in order; those that are taken again, after late outputs, replace what they said.
+  std::vector<AlarmChange> step(const SessionStep& step);
+  /// Of all that stand.
+  std::vector<AlarmChange> acknowledge();
+  const std::vector<Alarm>& standing() const { return standing_; }
+
+  void serialize(Archive& archive);
+
+ private:
+  struct Finding;
+  std::vector<Finding> findings(const SessionStep& step) const;
+  void raise(const Finding& finding, Index k, std::vector<AlarmChange>& changes);
+  void pass(AlarmCause cause, Index k, std::vector<AlarmChange>& changes);
+  std::string time(Index k) const { return time_text(labels_, k); }
+  std::string mode(Index j) const;
+
+  Labels labels_;
+  std::vector<std::string> modes_;
+  std::vector<Alarm> standing_;
+  Index last_ = -1;  ///< k of the last step; of those that are taken again, what it was
+};
+
+/// {"what", "k", "cause", "raised_at", "since", "times", "active", "acknowledged", "text",
+/// "proof"}.
+std::string json_of(const AlarmChange& change);
+
+}  // namespace cordon
