@@ -36,15 +36,24 @@ StreamLoop::StreamLoop(const Study& study, const Registry& registry,
 bool StreamLoop::restore() {
   if (arguments_.checkpoint.empty()) return true;
   const std::optional<CheckpointState> state = checkpoint_.read();
+  if (state && (state->log_bytes > 0) != !arguments_.log.empty()) {
+    throw InputError(arguments_.checkpoint.string(),
+                     {{"",
+                       state->log_bytes > 0 ? "belongs to a log, and none is named"
+                                            : "was written without a log",
+                       state->log_bytes > 0 ? "name its log by \"--log\""
+                                            : "leave \"--log\" out, or begin anew"}});
+  }
   if (state) {
     session_.restore(state->session);
     state->restore(alarms_);
-  } else {
-    session_.save();  // whoever cannot be saved is told so at once
   }
   if (!arguments_.log.empty())
     log_.emplace(arguments_.log, session_.session().name(), state ? state->log_bytes : 0);
-  if (!state) return true;
+  if (!state) {  // a log and its checkpoint are there together; whoever cannot be saved is told so
+    save();
+    return true;
+  }
   const Index next = session_.session().last().value_or(-1) + 1;
   return output_.write(fmt::format("{{\"restored\": true, \"next\": {}}}\n", next));
 }
