@@ -4,8 +4,9 @@
 //   previous   x⁺ = A x + B u + L (y - D u - C x),            M = A - L C,       D = [E, -L F]
 //   current    x⁺ = x̄ + Λ (y⁺ - D u⁺ - C x̄),  x̄ = A x + B u,  M = (I - Λ C) A,   D = [(I - Λ C) E,
 //   -Λ F]
-// and the estimate is x ± h with the half widths h of error_widths.hpp, which do not depend on the
-// data.
+// and the estimate is x ± h with the half widths h of error_widths.hpp, which depend on which
+// outputs are there, and not on what they are. Where some are missing M and D are those of the
+// others, and what x is off by by then joins the errors.
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -149,10 +150,9 @@ class ErrorHullObserver final : public Observer {
         return std::make_shared<ErrorStep>(with_outputs(model(), present),
                                            gain_.L(Eigen::all, present), form_);
       });
-      const Vector off = others->M.value.cwiseAbs() * off_.bound();
+      widths_.step_by(others->M, others->D, off_.bound());
       off_.start();
-      off_.step(moved(*others, before.u, used) + 2 * off);
-      widths_.step_by(others->M, others->D);
+      off_.step(moved(*others, before.u, used));
       return estimate();
     });
   }
@@ -213,6 +213,11 @@ class ErrorHullObserver final : public Observer {
   Enclosure estimate() {
     widths_.take_half_widths(half_);
     off_.add_bound(half_);
+    if (!half_.allFinite())
+      throw Error(
+          Errc::not_finite,
+          "the errors of \"error_hull\" have grown beyond all numbers: outputs were missing "
+          "for too long without which they do not decay; start it anew from a bounded set");
     half_ += 4 * rounding::unit * (half_ + x_.cwiseAbs());
     box_.lower = x_ - half_;
     box_.upper = x_ + half_;
@@ -274,8 +279,9 @@ constexpr const char* error_hull_details =
     "hulls that \"gain_correction\"\n"
     "(current) or \"luenberger\" (previous) would have with the same gain and an unlimited budget. "
     "Rounding errors are added, on\n"
-    "any backend. Where outputs are missing the errors go on from their box. Estimates are never "
-    "empty.";
+    "any backend. Where outputs are missing the errors go through A - L C of the others with their "
+    "directions, as up to some\n"
+    "thousand columns, of which the smallest are boxed now and then. Estimates are never empty.";
 
 }  // namespace
 
