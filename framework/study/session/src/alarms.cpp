@@ -136,10 +136,9 @@ void Alarms::raise(const Finding& finding, Index k, std::vector<AlarmChange>& ch
     changes.push_back({AlarmChange::What::raised, k, standing_.back()});
     return;
   }
-  // An empty estimate stays empty; outputs may be left out sample after sample.
-  if (at->is_active && at->cause != AlarmCause::fault) return;
-  if (at->is_active && k <= last_) {  // taken again, with more outputs: more is known, not less
-    if (at->text.starts_with(finding.text)) return;
+  if (at->is_active) {  // more is known of what lasts: after a reset, or with outputs that came
+                        // late
+    if (at->cause != AlarmCause::fault || at->text.starts_with(finding.text)) return;
     at->text = finding.text;
     at->proof = finding.proof;
     changes.push_back({AlarmChange::What::specified, k, *at});

@@ -39,14 +39,16 @@ std::size_t index_of(const Study& study, const std::string& name) {
                    {{"/pipelines", "there is no pipeline \"" + name + "\"", suggest(name, names)}});
 }
 
-/// All that the components of a pipeline are made from, as JSON.
-std::string parts_of(const Study& study, std::size_t index) {
-  const Json all = Json::parse(study.resolved, nullptr, false);
+/// Of all that the components of a pipeline are made from, as the resolved study has it.
+std::string fingerprint_of(const std::string& resolved, const std::string& pipeline) {
+  const Json all = Json::parse(resolved, nullptr, false);
   Json parts = Json::object();
   if (!all.is_object()) return "";  // a study that was put together in memory
   for (const char* part : {"system", "modes"}) parts[part] = all.value(part, Json());
-  parts["pipeline"] = all.at("pipelines").at(index);
-  return parts.dump();
+  for (const Json& one : all.value("pipelines", Json::array())) {
+    if (one.value("name", "") == pipeline) parts["pipeline"] = one;
+  }
+  return detail::fingerprint(parts.dump());
 }
 
 /// NaN in y tells what is missing.
@@ -74,13 +76,15 @@ class Session::Work {
  public:
   Work(const Study& study, const Registry& registry, std::size_t index,
        std::shared_ptr<const SetBackend> backend)
-      : spec_(study.pipelines.at(index)), model_(study.model), backend_(std::move(backend)) {
+      : spec_(study.pipelines.at(index)),
+        model_(study.model),
+        resolved_(study.resolved),
+        backend_(std::move(backend)) {
     if (spec_.design())
       throw InputError(study.file.string(),
                        {{"/pipelines/" + std::to_string(index),
                          "\"" + spec_.name + "\" designs an input, and takes no samples",
                          "name a pipeline with an observer or a diagnoser"}});
-    parts_ = parts_of(study, index);
     if (!backend_) backend_ = registry.make<BackendEntry>(spec_.backend.type, spec_.backend.params);
     if (const EstimationSpec* const estimation = spec_.estimation()) {
       const ComponentSpec& observer = estimation->observer;
@@ -93,7 +97,6 @@ class Session::Work {
       diagnoser_ =
           registry.make<DiagnoserEntry>(diagnoser.type, {bank, backend_}, diagnoser.params);
     }
-    start();
   }
 
   void start() {
@@ -148,7 +151,7 @@ class Session::Work {
 
   PipelineSpec spec_;
   Model model_;
-  std::string parts_;
+  std::string resolved_;  ///< the study, to tell its states from those of others
   std::vector<std::string> modes_;
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Observer> observer_;
@@ -225,7 +228,7 @@ class Session::Work {
 
   void serialize(Archive& archive) {
     archive.section(build_info().version);
-    archive.section(detail::fingerprint(parts_));
+    archive.section(fingerprint_of(resolved_, spec_.name));
     archive(last_, told_, was_empty_, timeline_);
     if (observer_) observer_->serialize(archive);
     if (diagnoser_) diagnoser_->serialize(archive);
