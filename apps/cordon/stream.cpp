@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Samples in, estimates or diagnoses out, one line each (docs/online.md).
-#include <fcntl.h>
 #include <memory>
 #include <string>
 #include <unistd.h>
@@ -9,12 +8,30 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "cordon/experiments/report.hpp"
+#include "cordon/study/run.hpp"
 #include "interrupt.hpp"
+#include "run_failures.hpp"
 #include "stream_loop.hpp"
 
 namespace cordon::apps {
 
 namespace {
+
+/// The results of a run over what was recorded, beside it.
+Exit run_recorded(const std::filesystem::path& file, const Program& program, bool quiet) {
+  Registry registry;
+  registry.load({program.plugins});
+  const Study study = read_study(file, registry, default_search_path(), program.study_plugins());
+  RunOptions options;
+  options.out = file.parent_path();
+  options.report = cordon::add_report;
+  const RunOutcome outcome = run_study(study, registry, options);
+  if (!quiet) note("Results are in " + options.out.string());
+  for (const std::string& complaint : complaints(study, outcome)) complain(complaint);
+  if (!outcome.report_error.empty()) warn(no_report + outcome.report_error);
+  return exit_of(outcome);
+}
 
 Exit run_stream(const Program& program, const StreamArguments& arguments) {
   const std::atomic<bool>* const stop = stop_on_signals();
@@ -29,7 +46,12 @@ Exit run_stream(const Program& program, const StreamArguments& arguments) {
   loop.run();
   if (!arguments.quiet) note(loop.summary());
   for (const std::string& complaint : loop.complaints()) complain(complaint);
-  return loop.complaints().empty() ? Exit::done : Exit::violated;
+  if (!loop.recorded().empty()) {
+    const Exit exit = run_recorded(loop.recorded(), program, arguments.quiet);
+    if (exit != Exit::done) return exit;
+  }
+  if (loop.complaints().empty()) return Exit::done;
+  return arguments.replay.empty() ? Exit::invalid : Exit::violated;
 }
 
 std::string every_problem(const std::string& text) {
@@ -77,6 +99,13 @@ CORDON_COMMAND(stream) {
       ->check(CLI::Validator(path_problem, "", ""))
       ->option_text("LOG")
       ->excludes("--log")
+      ->excludes("--checkpoint");
+  command
+      ->add_option("--record", arguments->record,
+                   "Keep the samples in this directory, and at the end the results of a run over "
+                   "them")
+      ->check(CLI::Validator(path_problem, "", ""))
+      ->option_text("DIR")
       ->excludes("--checkpoint");
   command->add_flag("--quiet", arguments->quiet, "Print no summary at the end");
   command->callback([&program, arguments] { program.exit = run_stream(program, *arguments); });

@@ -30,6 +30,8 @@ StreamLoop::StreamLoop(const Study& study, const Registry& registry,
       output_(STDOUT_FILENO, stop),
       checkpoint_(arguments.checkpoint) {
   session_.session().prove_hulls(arguments.sets);
+  if (!arguments.record.empty())
+    record_.emplace(arguments.record, study, session_.session().name());
   if (!arguments.replay.empty()) replayed_.emplace(arguments.replay, session_.session().name());
 }
 
@@ -71,6 +73,22 @@ void StreamLoop::run() {
   wall_s_ = std::chrono::duration<double>(Clock::now() - begin).count();
   if (!arguments_.checkpoint.empty()) save();
   if (replayed_) complaints_ = replayed_->differences();
+  keep_record([&] { record_->finish(); });
+}
+
+template <class Work>
+void StreamLoop::keep_record(Work&& work) {
+  if (!record_) return;
+  try {
+    work();
+  } catch (const Error& error) {
+    complaints_.push_back(std::string("the record ends: ") + error.what());
+    record_.reset();
+  }
+}
+
+std::filesystem::path StreamLoop::recorded() const {
+  return record_ && record_->has_samples() ? record_->study() : std::filesystem::path();
 }
 
 template <class Work>
@@ -116,6 +134,10 @@ std::string StreamLoop::answer_to(const GivenLine& given) {
     changes = alarms_.acknowledge();
     text = line_of(*given.request, changes);
   } else if (given.request) {
+    if (record_)
+      throw Error(Errc::invalid,
+                  "a stream that is recorded does not begin anew; end it, and start "
+                  "another one");
     session_.start();
     text = line_of(*given.request, {});
   }
@@ -129,6 +151,9 @@ std::string StreamLoop::answer_to(const GivenLine& given) {
 std::string StreamLoop::answer_to(const Taken& taken) {
   std::string text;
   if (taken.how != Taken::How::taken) text = line_of(taken, line_);
+  keep_record([&] {
+    for (const Sample& sample : taken.samples) record_->take(sample);
+  });
   for (const SessionStep& step : taken.steps) {
     const std::vector<AlarmChange> changes = alarms_.step(step);
     keep(changes);

@@ -13,6 +13,7 @@
 #include "line_pipe.hpp"
 #include "stream_checkpoint.hpp"
 #include "stream_log.hpp"
+#include "stream_record.hpp"
 #include "study/results/quantiles.hpp"
 
 namespace cordon::apps {
@@ -21,7 +22,7 @@ struct StreamArguments {
   std::filesystem::path study;
   std::string pipeline;
   std::vector<std::string> settings;
-  std::filesystem::path checkpoint, log, replay;  ///< empty: none
+  std::filesystem::path checkpoint, log, replay, record;  ///< empty: none
   std::int64_t every = 100;
   bool sets = false, quiet = false;
 };
@@ -36,6 +37,8 @@ class StreamLoop {
   void run();
   /// Counts and times, for people.
   std::string summary() const;
+  /// The study that was recorded; empty: none, or not all of it.
+  std::filesystem::path recorded() const;
   /// Of a log: alarms that are not those in it.
   const std::vector<std::string>& complaints() const { return complaints_; }
 
@@ -52,6 +55,9 @@ class StreamLoop {
   template <class Work>
   void written(const char* what, Work&& work);
   void save();
+  /// What ends the record does not end the stream.
+  template <class Work>
+  void keep_record(Work&& work);
 
   const StreamArguments& arguments_;
   OnlineSession session_;
@@ -61,6 +67,7 @@ class StreamLoop {
   LineOutput output_;
   std::optional<StreamLog> log_;
   std::optional<ReplayedLog> replayed_;
+  std::optional<StreamRecord> record_;
   Checkpoint checkpoint_;
   detail::Quantiles latency_us_;
   std::int64_t line_ = 0, refused_ = 0, since_checkpoint_ = 0, unwritten_ = 0;

@@ -47,7 +47,8 @@ void compare(const std::string& study, const Json& pipeline, const std::string& 
     Json step = Json::parse(line);
     REQUIRE_MESSAGE(!step.contains("error"), line);
     if (step["k"].is_null()) continue;  // of an observer that lags
-    for (const char* more : {"events", "alarms", "sample", "restarted", "not_enclosed"}) step.erase(more);
+    for (const char* more : {"events", "alarms", "sample", "restarted", "not_enclosed"})
+      step.erase(more);
     if (step.contains("set")) {
       while (set < sets.size() && sets[set].rfind(of_pipeline, 0) != 0) ++set;
       REQUIRE(set < sets.size());

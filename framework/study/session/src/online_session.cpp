@@ -116,18 +116,18 @@ class OnlineSession::Intake {
 
   Taken on_time(const Sample& sample) {
     Taken taken;
-    taken.steps.push_back(step(sample));
+    step(sample, taken);
     ++counts_.taken;
     return taken;
   }
 
-  SessionStep step(const Sample& sample, bool is_filled = false) {
-    SessionStep done = session_.step(sample);
+  void step(const Sample& sample, Taken& taken, bool is_filled = false) {
+    taken.steps.push_back(session_.step(sample));
+    taken.samples.push_back(sample);
     passed_.push_back({sample, is_filled, std::exchange(before_, {})});
     const auto most = static_cast<std::size_t>(std::max<std::int64_t>(rules_.lag, 1));
     if (passed_.size() > most) passed_.pop_front();
     if (corrects()) before_ = session_.save();
-    return done;
   }
 
   Taken after_gap(const Sample& sample, Index next) {
@@ -143,12 +143,11 @@ class OnlineSession::Intake {
                                      std::to_string(rules_.longest_gap) + " times are missing");
     Taken taken{Taken::How::filled,
                 jump + std::to_string(gap) + (gap == 1 ? " time is" : " times are") +
-                    " taken without outputs, and with the input of the sample before",
-                {}};
+                    " taken without outputs, and with the input of the sample before"};
     const Vector u = passed_.back().sample.u;
     for (Index k = next; k < sample.k; ++k)
-      taken.steps.push_back(step(without_outputs(k, u, sample.y.size()), true));
-    taken.steps.push_back(step(sample));
+      step(without_outputs(k, u, sample.y.size()), taken, true);
+    step(sample, taken);
     ++counts_.filled;
     counts_.filled_steps += gap;
     return taken;
@@ -207,6 +206,7 @@ class OnlineSession::Intake {
     for (std::size_t i = at; i < passed_.size(); ++i) {
       if (i > at) passed_[i].before = session_.save();
       taken.steps.push_back(session_.step(passed_[i].sample));
+      taken.samples.push_back(passed_[i].sample);
     }
     before_ = session_.save();
     ++counts_.corrected;

@@ -33,6 +33,7 @@ struct Taken {
   std::string said = {};  ///< the rule that was followed, for people; "" for the next one
   /// In the order of times: those that were filled or taken again first.
   std::vector<SessionStep> steps = {};
+  std::vector<Sample> samples = {};  ///< that these are of
 };
 std::string_view to_string(Taken::How how) noexcept;
 
