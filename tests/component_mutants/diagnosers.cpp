@@ -121,11 +121,10 @@ class StartsNowhere final : public Bank {
   }
 };
 
-class ForgetsExclusions final : public Bank {
+class ForgetsBeginning final : public Bank {
   using Bank::Bank;
   void do_serialize(Archive& archive) override {
     for (const auto& filter : filters_) filter->save(archive);
-    archive(since_);
   }
 };
 
@@ -186,8 +185,8 @@ void add_diagnosers(Registrar& r) {
                              "never excludes the mode that stands first");
   add_diagnoser<StartsNowhere>(r, "starts_nowhere", "breaks diagnoser.restart",
                                "keeps its exclusions when it begins anew");
-  add_diagnoser<ForgetsExclusions>(r, "forgets_exclusions", "breaks diagnoser.saved_state",
-                                   "keeps its exclusions out of its saved state");
+  add_diagnoser<ForgetsBeginning>(r, "forgets_beginning", "breaks diagnoser.saved_state",
+                                  "keeps the time of its first sample out of its saved state");
   add_diagnoser<TellsCorners>(r, "tells_corners", "breaks diagnoser.estimate",
                               "tells a corner of the estimate");
   add_diagnoser<TellsNoMode>(r, "tells_no_mode", "breaks diagnoser.decision",
