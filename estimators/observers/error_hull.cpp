@@ -23,6 +23,7 @@
 #include "observers/error_widths.hpp"
 #include "observers/observer_gain.hpp"
 #include "observers/present_outputs.hpp"
+#include "saved_state.hpp"
 
 namespace cordon::estimators {
 
@@ -169,6 +170,25 @@ class ErrorHullObserver final : public Observer {
     if (!hull.is_bounded())
       throw Error(Errc::unsupported, "\"error_hull\" goes on from bounded sets only");
     replaced_ = X;
+  }
+
+  void do_serialize(Archive& archive) override {
+    const Index n = model().states();
+    archive.set(last_, n);
+    serialize_time(archive, k_);
+    archive(x_, off_, widths_);
+    serialize_set(archive, replaced_, n);
+    bool has_before = before_.estimate.set != nullptr;
+    archive(has_before);
+    if (archive.is_reading()) before_ = {{}, 0, {}, widths_.memory(), {}};
+    if (has_before) {
+      archive.set(before_.estimate, n);
+      serialize_time(archive, before_.k);
+      archive(before_.x, before_.off);
+      widths_.serialize(before_.widths, archive);
+    }
+    if (x_.size() != n || (has_before && before_.x.size() != n))
+      archive.refuse("a centre of another size");
   }
 
   /// An estimate of its own at time k is gone back to with all that was known then, by which errors

@@ -9,6 +9,7 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
 #include "observers/rounding_room.hpp"
+#include "saved_state.hpp"
 
 namespace cordon::estimators {
 
@@ -232,6 +233,28 @@ Vector ErrorWidths::half_widths() const {
   Vector half;
   take_half_widths(half);
   return half;
+}
+
+void ErrorWidths::serialize(Archive& archive) {
+  State state;
+  keep(state);
+  serialize(state, archive);
+  if (archive.is_reading()) go_back(state);
+}
+
+void ErrorWidths::serialize(State& state, Archive& archive) const {
+  const Index n = sum_.size();
+  for (std::optional<Columns>* part : {&state.noise, &state.start}) {
+    if (!*part || archive.is_reading()) *part = Columns{Matrix(n, 0), memory_, Vector::Zero(n)};
+    archive((*part)->value, (*part)->off, (*part)->past);
+    if ((*part)->value.rows() != n || (*part)->past.size() != n)
+      archive.refuse("errors of another dimension");
+  }
+  archive(state.sum, state.steps, state.is_after_gap);
+  serialize_within(archive, state.limit, 0, Index{1} << 60);
+  const bool has_noise = D_.value.cols() > 0;
+  if (state.sum.size() != n || !(state.steps >= 0) || (!has_noise && !state.sum.isZero(0)))
+    archive.refuse("no half widths of errors");
 }
 
 }  // namespace cordon::estimators

@@ -52,6 +52,8 @@ class ErrorWidths {
   };
   void keep(State& state) const;
   void go_back(const State& state);
+  void serialize(Archive& archive);
+  void serialize(State& state, Archive& archive) const;
 
  private:
   Columns columns(const Rounded& Z) const;

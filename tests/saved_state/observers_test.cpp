@@ -89,6 +89,7 @@ std::shared_ptr<const ComponentSpec> spec(const std::string& type, Params params
 
 std::vector<Choice> choices() {
   const Matrix gain{{.4, .1, .2}, {0, .3, .1}, {.1, -.1, .1}};
+  const std::string previous = "previous";
   const auto given = spec("given", Params().set("matrix", gain)), kalman = spec("kalman");
   const auto few = [] { return Params().set("max_generators", std::int64_t{12}); };
   const auto inner = [] { return Params().set("inner_samples", std::int64_t{3}); };
@@ -110,6 +111,8 @@ std::vector<Choice> choices() {
   all.push_back(
       {"interval_trajectory", Params().set("upper_gain", given).set("lower_gain", kalman)});
   all.push_back({"integrated", inner()});
+  all.push_back({"error_hull", Params().set("gain", given).set("measurement", previous)});
+  all.push_back({"error_hull", Params()});
   all.push_back({"descriptor", few()});
   all.push_back({"descriptor", few().set("admissible_set", box(3, 50))});
   return all;
@@ -177,7 +180,7 @@ TEST_CASE("observers go on from a saved state with the same bits") {
       }
     }
   }
-  CHECK(seen.size() == 8);
+  CHECK(seen.size() == 9);
   CHECK(trials > 200);
   MESSAGE(trials, " observers");
 }
