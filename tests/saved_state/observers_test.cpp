@@ -142,13 +142,15 @@ std::optional<Trial<Observer>> trial_of(const Choice& choice, const Place& place
   const Model model = plant(kind);
   const ObserverContext context{model, trial.backend};
   if (!registry.check<ObserverEntry>(choice.observer, context, choice.params).empty()) return {};
-  const bool leaves_out = seed % 2 == 0;
+  // Without a set at all times the outputs have to determine the state.
+  const bool may_lack = kind != Kind::descriptor || choice.params.has("admissible_set");
+  const bool leaves_out = may_lack && seed % 2 == 0;
   trial.make = [=, &registry, backend = trial.backend] {
     auto made = registry.make<ObserverEntry>(choice.observer, {model, backend}, choice.params);
     if (leaves_out) made->leave_out_outliers(2, 10);
     return std::shared_ptr<Observer>(std::move(made));
   };
-  trial.samples = samples_of(model, seed, seed % 3 != 0);
+  trial.samples = samples_of(model, seed, may_lack && seed % 3 != 0);
   trial.after[replaced_at] = [backend = trial.backend, X0 = model.X0](Observer& observer) {
     LineForm wide = X0;
     wide.G *= 10;
