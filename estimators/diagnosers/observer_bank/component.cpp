@@ -161,15 +161,17 @@ void check_gains(const DiagnoserContext& context, const Params& params,
   if (listed && params.has("gain"))
     problems.push_back({"/gains", "stands beside \"gain\"", "remove one of the two"});
   if (listed) return check_list(bank, params.matrices("gains"), problems);
-  for (Index j = 0; j < bank.size(); ++j) {
-    const auto same_loop = [&](const Mode& earlier) {  // whose problem with the gain has been told
-      const LinearModel &m = bank[j].model.linear, &other = earlier.model.linear;
-      return m.A == other.A && m.C == other.C && m.sensor_center() == other.sensor_center();
+  std::vector<const LinearModel*> told;  // of which there is a problem
+  for (const Mode& mode : bank.modes) {
+    const LinearModel& m = mode.model.linear;
+    const auto same_loop = [&](const LinearModel* other) {
+      return m.A == other->A && m.C == other->C && m.sensor_center() == other->sensor_center();
     };
-    if (std::any_of(bank.modes.begin(), bank.modes.begin() + j, same_loop)) continue;
+    if (std::any_of(told.begin(), told.end(), same_loop)) continue;
     const std::size_t before = problems.size();
-    check_observer_gain(context_of(context, bank[j]), params, "gain", default_gain(), problems);
-    for (std::size_t i = before; i < problems.size(); ++i) problems[i].message += of_mode(bank[j]);
+    check_observer_gain(context_of(context, mode), params, "gain", default_gain(), problems);
+    for (std::size_t i = before; i < problems.size(); ++i) problems[i].message += of_mode(mode);
+    if (problems.size() > before) told.push_back(&m);
   }
 }
 
