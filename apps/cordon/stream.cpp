@@ -54,6 +54,25 @@ Exit run_stream(const Program& program, const StreamArguments& arguments) {
   return arguments.replay.empty() ? Exit::invalid : Exit::violated;
 }
 
+/// Microseconds of "5ms", "200us" or "0.01s"; nothing: it is none.
+std::optional<double> microseconds_of(const std::string& text) {
+  std::size_t end = 0;
+  double number = 0;
+  try {
+    number = std::stod(text, &end);
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  const std::string unit = text.substr(end);
+  const double scale = unit == "us" ? 1 : unit == "ms" ? 1e3 : unit == "s" ? 1e6 : 0;
+  const double time = number * scale;
+  return time > 0 && time <= 1e9 ? std::optional(time) : std::nullopt;
+}
+
+std::string deadline_problem(const std::string& text) {
+  return microseconds_of(text) ? "" : "a time with its unit: 5ms, 200us or 0.01s";
+}
+
 std::string every_problem(const std::string& text) {
   const bool is_number = !text.empty() && text.size() < 10 &&
                          text.find_first_not_of("0123456789") == std::string::npos;
@@ -88,6 +107,13 @@ CORDON_COMMAND(stream) {
       ->check(CLI::Validator(every_problem, "", ""))
       ->option_text("N")
       ->needs("--checkpoint");
+  command
+      ->add_option_function<std::string>(
+          "--deadline",
+          [arguments](const std::string& text) { arguments->deadline_us = *microseconds_of(text); },
+          "What solvers have not decided so long after the sample has come stays open")
+      ->check(CLI::Validator(deadline_problem, "", ""))
+      ->option_text("TIME");
   command
       ->add_option("--log", arguments->log,
                    "Keep samples, requests and alarms in this file, for --replay")

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common.hpp"
+#include "cordon/solvers/deadline.hpp"
 #include "stream_lines.hpp"
 
 namespace cordon::apps {
@@ -142,13 +143,24 @@ std::string StreamLoop::answer_to(const GivenLine& given) {
     text = line_of(*given.request, {});
   }
   std::optional<Taken> taken;
-  if (given.sample) taken = session_.take(*given.sample);
+  bool is_cut = false;
+  if (given.sample) taken = take(*given.sample, is_cut);
   if (log_) written("the log was not written", [&] { log_->write(log_line(given)); });
   keep(changes);
-  return taken ? answer_to(*taken) : text;
+  return taken ? answer_to(*taken, is_cut) : text;
 }
 
-std::string StreamLoop::answer_to(const Taken& taken) {
+Taken StreamLoop::take(const GivenSample& sample, bool& is_cut) {
+  if (!(arguments_.deadline_us > 0)) return session_.take(sample);
+  const std::chrono::duration<double, std::micro> limit(arguments_.deadline_us);
+  const Deadline deadline(Clock::now() + std::chrono::duration_cast<Clock::duration>(limit));
+  Taken taken = session_.take(sample);
+  is_cut = deadline.has_ended_any();
+  cut_ += is_cut;
+  return taken;
+}
+
+std::string StreamLoop::answer_to(const Taken& taken, bool is_cut) {
   std::string text;
   if (taken.how != Taken::How::taken) text = line_of(taken, line_);
   keep_record([&] {
@@ -157,7 +169,7 @@ std::string StreamLoop::answer_to(const Taken& taken) {
   for (const SessionStep& step : taken.steps) {
     const std::vector<AlarmChange> changes = alarms_.step(step);
     keep(changes);
-    text += line_of(step, changes, session_.session(), arguments_.sets);
+    text += line_of(step, changes, session_.session(), {arguments_.sets, is_cut});
   }
   return text;
 }
@@ -181,6 +193,7 @@ std::string StreamLoop::summary() const {
   add(counts.corrected, "corrected");
   add(counts.late, "late");
   add(counts.repeated, "repeated");
+  add(cut_, "with questions that the deadline has left open");
   add(unwritten_, "not written");
   add(static_cast<std::int64_t>(alarms_.standing().size()), "alarms stand");
   if (replayed_) text += fmt::format(", {} alarm changes as in the log", replayed_->agreed());

@@ -24,6 +24,7 @@ struct StreamArguments {
   std::vector<std::string> settings;
   std::filesystem::path checkpoint, log, replay, record;  ///< empty: none
   std::int64_t every = 100;
+  double deadline_us = 0;  ///< of a step; 0: none
   bool sets = false, quiet = false;
 };
 
@@ -49,7 +50,9 @@ class StreamLoop {
   /// False: nobody reads on, or a signal came.
   bool answer(const std::string& line);
   std::string answer_to(const GivenLine& given);
-  std::string answer_to(const Taken& taken);
+  /// Within the deadline, if there is one; `is_cut`: it has left a question open.
+  Taken take(const GivenSample& sample, bool& is_cut);
+  std::string answer_to(const Taken& taken, bool is_cut);
   void keep(const std::vector<AlarmChange>& changes);
   /// What could not be written is said, and the stream goes on.
   template <class Work>
@@ -70,7 +73,7 @@ class StreamLoop {
   std::optional<StreamRecord> record_;
   Checkpoint checkpoint_;
   detail::Quantiles latency_us_;
-  std::int64_t line_ = 0, refused_ = 0, since_checkpoint_ = 0, unwritten_ = 0;
+  std::int64_t line_ = 0, refused_ = 0, since_checkpoint_ = 0, unwritten_ = 0, cut_ = 0;
   std::vector<std::string> complaints_;
   double wall_s_ = 0;
 };

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `cordon stream` from a shell.
+#include <map>
+#include <sstream>
+
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
@@ -226,4 +229,76 @@ TEST_CASE("a checkpoint that is damaged, or another file, is refused") {
   scratch.write("state", saved);
   CHECK(cordon_with(stream + "interval < /dev/null").code == 2);
   CHECK(cordon_with(stream + "zonotope < /dev/null").says("\"next\": 1"));
+}
+
+TEST_CASE("what is recorded is a study with its results, and is verified") {
+  const Scratch scratch;
+  const std::string study =
+      scratch.write("study.json", study_text(R"({"jumps": "fill", "late": "correct"})")).string();
+  std::string input;
+  for (int k = 0; k < 30; ++k) {
+    const std::string y = k % 5 == 2 ? "[0.1, null]" : "[0.1, 0.05]";
+    if (k == 11 || k == 12) continue;
+    input += "{\"k\": " + std::to_string(k) + ", \"u\": [0], \"y\": " + y + "}\n";
+    if (k == 9) input += "{\"k\": 7, \"u\": [0], \"y\": [0.1, 0.0625]}\n";
+  }
+  const std::string data = scratch.write("input", input).string();
+  const std::string record = (scratch / "record").string();
+  const test::Outcome outcome =
+      cordon_with("stream " + study + " --pipeline constrained --record " + record + " < " + data);
+  CHECK(outcome.code == 0);
+  const auto results = nlohmann::json::parse(bytes_of(record + "/results.json"));
+  const auto& steps = results["pipelines"][0]["steps"];
+  CHECK(steps.size() == 30);
+  CHECK(bytes_of(record + "/data.csv").find("7,0,0.1,0.0625") != std::string::npos);
+  std::istringstream lines(outcome.out);
+  std::map<int, nlohmann::json> last;  // of each time, as corrected
+  for (std::string line; std::getline(lines, line);) {
+    const auto step = nlohmann::json::parse(line);
+    if (step.contains("k")) last[step["k"]] = step;
+  }
+  for (const auto& step : steps) CHECK(step["hull"] == last[step["k"]]["hull"]);
+  CHECK(cordon_with("verify " + record).code == 0);
+  CHECK(cordon_with("stream " + study + " --pipeline constrained --record " + record + " < " + data)
+            .complains("holds a record already"));
+}
+
+TEST_CASE("a disk that is full ends the record and the log, and not the stream") {
+  const Scratch scratch;
+  const std::string study = scratch.write("study.json", study_text()).string();
+  std::string input;
+  for (int k = 0; k < 3000; ++k) input += "{\"u\": [0], \"y\": [0.1, 0.05]}\n";
+  const std::string data = scratch.write("input", input).string();
+  const test::Outcome outcome = cordon_with(
+      "stream " + study + " --pipeline zonotope --record " + (scratch / "record").string() +
+          " --log " + (scratch / "log").string() + " < " + data + " | tail -1",
+      "ulimit -f 16;");
+  CHECK(outcome.says("\"k\": 2999"));
+  CHECK(outcome.complains("the log was not written"));
+  CHECK(outcome.complains("the record ends"));
+}
+
+TEST_CASE("a deadline leaves questions open, and no estimate is wrong") {
+  const std::string samples = leaking();
+  const std::string until_leak = samples.substr(0, samples.find("{\"k\": 40,"));
+  const Streamed free = stream("--pipeline constrained", until_leak),
+                 cut = stream("--pipeline constrained --deadline 0.001us", until_leak);
+  CHECK(cut.code == 0);
+  REQUIRE(free.lines.size() == cut.lines.size());
+  bool left_open = false;
+  for (std::size_t k = 0; k < free.lines.size(); ++k) {
+    left_open = left_open || cut.lines[k].contains("deadline");
+    CHECK(cut.lines[k]["consistent"] != "no");
+    LeakyPlant plant;
+    for (std::size_t i = 0; i < k; ++i) plant.next();
+    for (int i = 0; i < 2; ++i) {
+      CHECK(cut.lines[k]["hull"]["lower"][i].get<double>() <= plant.x[i]);
+      CHECK(cut.lines[k]["hull"]["upper"][i].get<double>() >= plant.x[i]);
+    }
+  }
+  CHECK(left_open);
+  CHECK(cut.err.find("deadline") != std::string::npos);
+  const Streamed bank = stream("--pipeline bank --deadline 0.001us", until_leak);
+  for (const auto& line : bank.lines) CHECK(line["modes"][0]["candidate"] == true);
+  CHECK(stream("--pipeline bank --deadline 5", "").code != 0);
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cordon/solvers/deadline.hpp"
+
 namespace cordon {
 
 using vectors::add_multiple;
@@ -109,6 +111,8 @@ BoxSimplex::Status BoxSimplex::concluded(Status status) {
   return status;
 }
 
+constexpr Index look_at_clock = 16;  // iterations
+
 BoxSimplex::Status BoxSimplex::solve(double enough, Index most) {
   iterations_ = 0;
   if (!take_objective()) return Status::unsolved;
@@ -116,6 +120,7 @@ BoxSimplex::Status BoxSimplex::solve(double enough, Index most) {
   Index idle = 0;
   for (const Index limit = std::min(most, 200 + 20 * (m_ + g_)); iterations_ < limit;
        ++iterations_) {
+    if (iterations_ % look_at_clock == 0 && Deadline::is_over()) return Status::unsolved;
     const bool is_below = enough > any && objective() < enough;
     const Index row = is_below ? none : leaving_row();
     if (row == none && perturbed_) {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/solvers/deadline.hpp"
 
 namespace cordon {
 
@@ -130,6 +131,7 @@ bool InteriorPoint::maximize(VectorIn g) {
   below_ = (-g).cwiseMax(0.0).array() + 1;
   Direction step;
   for (Index round = 0; round < most_rounds; ++round) {
+    if (Deadline::is_over()) return false;
     to_upper_ = 1 - xi_.array();
     to_lower_ = 1 + xi_.array();
     rows_left_ = b_ - linalg::product(A_, xi_);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cordon/solvers/deadline.hpp"
+
 namespace cordon {
 
 namespace {
@@ -12,6 +14,7 @@ namespace {
 /// Rational arithmetic beyond about a second is not worth an answer. Numbers grow with the spread
 /// of the exponents.
 bool is_affordable(double operations, MatrixIn S, MatrixIn A) {
+  if (Deadline::is_over()) return false;
   double smallest = infinity, largest = 0;
   for (const MatrixIn* block : {&S, &A}) {
     for (Index j = 0; j < block->cols(); ++j) {
