@@ -85,6 +85,23 @@ TEST_CASE("redundancy goes, equations are found") {
   CHECK(is(V.volume(), 1));
 }
 
+TEST_CASE("half-spaces of doubles are told as they are") {
+  const Matrix H{{3, 3}, {-0.1, 7}, {0, -3}, {-5, -1e-3}};
+  const Vector h{{1.0, 1.0, 0.1, 1.0}};
+  const Polytope P = Polytope::from_inequalities(H, h);
+  const Polytope::Inequalities rows = P.inequalities();
+  CHECK(Polytope::from_inequalities(rows.H, rows.h) == P);
+  for (Index i = 0; i < rows.H.rows(); ++i) {
+    CHECK(rows.H.row(i).cwiseAbs().maxCoeff() > 0.5);
+    CHECK(rows.H.row(i).cwiseAbs().maxCoeff() < 2);
+    CHECK(is(P.support(rows.H.row(i).transpose()), rows.h[i]));
+  }
+  const Polytope flat =
+      Polytope::from_inequalities(Matrix(0, 2), Vector(0), Matrix{{3, 0}}, Vector{{1.0}});
+  const Polytope::Inequalities line = flat.inequalities();
+  CHECK(Polytope::from_inequalities(line.H, line.h, line.Q, line.q) == flat);
+}
+
 TEST_CASE("lines, rays and half-spaces") {
   const Polytope half = Polytope::from_inequalities(Matrix{{1.0, 1.0}}, Vector{{1.0}});
   CHECK(!half.is_bounded());
@@ -238,6 +255,22 @@ TEST_CASE("a budget ends what takes more, and counts the same again") {
     CHECK(std::string(error.what()).find("limit of exact work") != std::string::npos);
   }
   CHECK(sum(1e9) == needed);  // those before are gone
+}
+
+TEST_CASE("a watch looks at work, and ends it") {
+  int looked = 0;
+  const auto work = [] { return cube(4).minkowski_sum(cross_polytope(4)).is_empty(); };
+  {
+    const ExactWatch watch([&] { ++looked; });
+    CHECK(!work());
+  }
+  CHECK(looked > 3);
+  const int before = looked;
+  CHECK(!work());  // that one is gone
+  CHECK(looked == before);
+  struct Ended {};
+  const ExactWatch watch([] { throw Ended(); });
+  CHECK_THROWS_AS(work(), Ended);
 }
 
 TEST_CASE("rounding a line sets its coordinates free") {

@@ -11,6 +11,7 @@ namespace cordon {
 namespace {
 
 thread_local ExactBudget* budget_of_this_thread = nullptr;
+thread_local ExactWatch* watch_of_this_thread = nullptr;
 
 }  // namespace
 
@@ -20,6 +21,7 @@ ExactBudget::ExactBudget(double operations)
 ExactBudget::~ExactBudget() { budget_of_this_thread = outer_; }
 
 void ExactBudget::spend(double operations) {
+  if (watch_of_this_thread) watch_of_this_thread->look();
   for (ExactBudget* budget = budget_of_this_thread; budget; budget = budget->outer_) {
     budget->spent_ += operations;
     if (budget->spent_ > budget->limit_) {
@@ -30,5 +32,10 @@ void ExactBudget::spend(double operations) {
     }
   }
 }
+
+ExactWatch::ExactWatch(std::function<void()> look)
+    : look_(std::move(look)), outer_(std::exchange(watch_of_this_thread, this)) {}
+
+ExactWatch::~ExactWatch() { watch_of_this_thread = outer_; }
 
 }  // namespace cordon

@@ -47,21 +47,41 @@ Matrix columns_of(const Description& in, Wanted wanted, bool scale) {
   return out;
 }
 
-/// Scaled so that the largest entry of the normal is about 1.
-RationalVector scaled_row(const RationalVector& row) {
-  RationalVector normal(row.begin() + 1, row.end());
-  const RationalVector before = normal;
-  rational::make_primitive(normal);
-  rational::scale_to_one(normal);
+/// The row with a multiple of its normal in the place of that.
+RationalVector with_normal(const RationalVector& row, const RationalVector& normal) {
   RationalVector out{row[0]};
   for (std::size_t i = 0; i < normal.size(); ++i) {
-    if (sgn(before[i]) != 0) {
-      out[0] *= normal[i] / before[i];
+    if (sgn(row[i + 1]) != 0) {
+      out[0] *= normal[i] / row[i + 1];
       break;
     }
   }
   out.insert(out.end(), normal.begin(), normal.end());
   return out;
+}
+
+/// Scaled so that the largest entry of the normal is about 1.
+RationalVector scaled_row(const RationalVector& row) {
+  RationalVector normal(row.begin() + 1, row.end());
+  rational::make_primitive(normal);
+  rational::scale_to_one(normal);
+  return with_normal(row, normal);
+}
+
+bool is_double(const Rational& value) {
+  const double near = rational::nearest(value);
+  return std::isfinite(near) && rational::exact(near) == value;
+}
+
+/// The same of doubles, where a multiple of the row is made of them: beside the normal [1, 1] the
+/// bound of [3, 3] x ≤ 1 is none.
+RationalVector row_for_doubles(const RationalVector& row) {
+  RationalVector whole = row;
+  rational::make_primitive(whole);
+  RationalVector normal(whole.begin() + 1, whole.end());
+  rational::scale_to_one(normal);
+  RationalVector out = with_normal(row, normal);
+  return std::all_of(out.begin(), out.end(), is_double) ? out : scaled_row(row);
 }
 
 /// To about 15 digits; NaN where doubles have fewer.
@@ -360,7 +380,7 @@ Polytope::Inequalities Polytope::inequalities() const {
   Inequalities out{Matrix(rows, n), Vector(rows), Matrix(equations, n), Vector(equations)};
   Index next = 0, next_equation = 0;
   for (std::size_t k = 0; k < all.rows.size(); ++k) {
-    const RationalVector row = scaled_row(all.rows[k]);
+    const RationalVector row = row_for_doubles(all.rows[k]);
     const Index i = all.linear[k] ? next_equation++ : next++;
     Matrix& H = all.linear[k] ? out.Q : out.H;
     (all.linear[k] ? out.q : out.h)[i] = rounded(row[0]);

@@ -2,6 +2,8 @@
 // What somebody is ready to spend on exact polyhedra.
 #pragma once
 
+#include <functional>
+
 namespace cordon {
 
 /// As long as it lives, what its thread asks of Polytope may take this many operations on machine
@@ -25,6 +27,23 @@ class ExactBudget {
  private:
   double limit_, spent_ = 0;
   ExactBudget* outer_;
+};
+
+/// As long as it lives, `look` is called wherever the work of its thread is counted; what it throws
+/// ends the work. Watches may be nested: the innermost one looks. It is destroyed on the thread
+/// that made it.
+class ExactWatch {
+ public:
+  explicit ExactWatch(std::function<void()> look);
+  ExactWatch(const ExactWatch&) = delete;
+  ExactWatch& operator=(const ExactWatch&) = delete;
+  ~ExactWatch();
+
+  void look() const { look_(); }
+
+ private:
+  std::function<void()> look_;
+  ExactWatch* outer_;
 };
 
 }  // namespace cordon
