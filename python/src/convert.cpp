@@ -28,9 +28,17 @@ Params::Value value_from(py::handle given, const char* name) {
   if (py::isinstance<py::str>(given)) return given.cast<std::string>();
   if (py::isinstance<ConvexSet>(given)) {
     const View seen = given.cast<const ConvexSet&>().view();
-    if (!seen.is_exact_form())
-      throw Error(Errc::unsupported, std::string(name) + ": a set with an exact form is needed");
+    if (!seen.is_exact_form()) {
+      throw Error(Errc::unsupported, std::string(name) +
+                                         ": a set with an exact form is needed; take an enclosure, "
+                                         "X.as_(\"constrained_zonotope\")");
+    }
     return seen.form;
+  }
+  if (py::isinstance<py::dict>(given)) {
+    throw py::type_error(std::string(name) +
+                         ": a number, a text, an array or a set is needed, not a dictionary; "
+                         "parameters are given by their names, max_generators=20");
   }
   const py::array a = py::array::ensure(given);
   if (!a) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <exception>
+#include <new>
 #include <utility>
 
 #include "bindings.hpp"
@@ -65,6 +66,10 @@ void bind_errors(py::module_&) {
         return;
       }
       raise_of(std::current_exception());
+    } catch (const std::bad_alloc&) {
+      PyErr_SetString(PyExc_MemoryError,
+                      "the matrices do not fit into memory: those of a set are dense, n rows and a "
+                      "column per generator and line; reduce() keeps sets small");
     }
   });
 }

@@ -6,6 +6,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "cordon/core/error.hpp"
+#include "cordon/solvers/exact_budget.hpp"
 #include "cordon/solvers/polytope.hpp"
 #include "cordon/values/convex_set.hpp"
 
@@ -13,9 +14,17 @@ namespace cordon::python {
 
 namespace {
 
+/// Without the interpreter's lock; Ctrl-C ends work in exact arithmetic, which may take long.
+template <class Work>
+auto watched(Work&& work) {
+  Signals signals;
+  const ExactWatch watch([&] { signals.look(); });
+  return unlocked(std::forward<Work>(work));
+}
+
 std::shared_ptr<const SetBackend> backend_of(const std::string& name, const py::dict& params) {
   const Params given = params_from(params);
-  return unlocked([&] { return representation(name, given); });
+  return watched([&] { return representation(name, given); });
 }
 
 Inequalities inequalities_from(py::handle H, py::handle h) {
@@ -28,7 +37,7 @@ Inequalities inequalities_from(py::handle H, py::handle h) {
 }
 
 py::dict view_of(const ConvexSet& X) {
-  const View seen = unlocked([&] { return X.view(); });
+  const View seen = watched([&] { return X.view(); });
   py::dict made = form_of(seen.form);
   made["H"] = array_of(seen.rows.rows() > 0 ? seen.rows.H : Matrix(0, seen.dim()));
   made["h"] = array_of(seen.rows.h);
@@ -46,7 +55,7 @@ ConvexSet of_view(const py::dict& blocks, const std::string& claim, const std::s
   X.claim = claim == "exact" ? Tightness::exact : Tightness::outer;
   check(X, "the set");
   const auto made = backend_of(backend, params);
-  return unlocked([&] { return ConvexSet::of(X, made); });
+  return watched([&] { return ConvexSet::of(X, made); });
 }
 
 /// {x : H x ≤ h}. What holds no half-spaces gets the exchange form of the polyhedron, which is made
@@ -55,7 +64,7 @@ ConvexSet of_inequalities(py::handle H, py::handle h, const std::string& name,
                           const py::dict& params) {
   const Inequalities rows = inequalities_from(H, h);
   const auto backend = backend_of(name, params);
-  return unlocked([&]() -> ConvexSet {
+  return watched([&]() -> ConvexSet {
     std::optional<ConvexSet> made;
     try {
       made = ConvexSet::of(with_rows({make_space(rows.H.cols())}, rows), backend);
@@ -92,23 +101,32 @@ py::tuple support_of(const ConvexSet& X, py::handle direction) {
   const Vector d = vector_of(direction, "d");
   Vector at;
   Certificate why;
-  const double value = unlocked([&] { return X.support(d, &at, &why); });
+  const double value = watched([&] { return X.support(d, &at, &why); });
   return py::make_tuple(value, at.size() == X.dim() ? py::object(array_of(at)) : py::none(),
                         certificate_of(why));
 }
 
 py::tuple hull_of(const ConvexSet& X) {
   std::vector<Certificate> why;
-  const Box hull = unlocked([&] { return X.hull(&why); });
+  const Box hull = watched([&] { return X.hull(&why); });
   py::list proofs;
   for (const Certificate& proof : why) proofs.append(certificate_of(proof));
   return py::make_tuple(array_of(hull.lower), array_of(hull.upper), proofs);
 }
 
+/// Of half-spaces that are the set, whatever the exchange form beside them holds, at once.
+Matrix vertices_of(const ConvexSet& X) {
+  if (X.representation() != "polytope") return X.vertices();
+  const View seen = X.view();
+  if (seen.claim != Tightness::exact || seen.rows.rows() == 0) return X.vertices();
+  const Polytope P = Polytope::from_inequalities(seen.rows.H, seen.rows.h);
+  return P.is_empty() || P.is_bounded() ? P.generators().vertices : X.vertices();
+}
+
 template <class Ask>
 py::tuple asked(Ask&& ask) {
   Certificate why;
-  const Answer answer = unlocked([&] { return ask(&why); });
+  const Answer answer = watched([&] { return ask(&why); });
   return answer_of(answer, why);
 }
 
@@ -146,59 +164,59 @@ void bind_operations(py::class_<ConvexSet>& set) {
   set.def("as_",
           [](const ConvexSet& X, const std::string& name, const py::dict& params) {
             const auto backend = backend_of(name, params);
-            return unlocked([&] { return X.as(backend); });
+            return watched([&] { return X.as(backend); });
           })
       .def("map",
            [](const ConvexSet& X, py::handle A) {
              const Matrix made = matrix_of(A, "A");
-             return unlocked([&] { return made * X; });
+             return watched([&] { return made * X; });
            })
       .def("scale",
            [](const ConvexSet& X, py::handle s) {
              const double factor = number_of(s, "the factor");
-             return unlocked([&] { return factor * X; });
+             return watched([&] { return factor * X; });
            })
       .def("translate",
            [](const ConvexSet& X, py::handle t) {
              const Vector made = vector_of(t, "t");
-             return unlocked([&] { return X + made; });
+             return watched([&] { return X + made; });
            })
       .def("translate_back",
            [](const ConvexSet& X, py::handle t) {
              const Vector made = -vector_of(t, "t");
-             return unlocked([&] { return X + made; });
+             return watched([&] { return X + made; });
            })
       .def("affine_map",
            [](const ConvexSet& X, py::handle A, py::handle t) {
              const Matrix map = matrix_of(A, "A");
              const Vector shift = vector_of(t, "t");
-             return unlocked([&] { return X.affine_map(map, shift); });
+             return watched([&] { return X.affine_map(map, shift); });
            })
       .def("sum",
-           [](const ConvexSet& X, const ConvexSet& Y) { return unlocked([&] { return X + Y; }); })
+           [](const ConvexSet& X, const ConvexSet& Y) { return watched([&] { return X + Y; }); })
       .def("intersection",
-           [](const ConvexSet& X, const ConvexSet& Y) { return unlocked([&] { return X & Y; }); })
+           [](const ConvexSet& X, const ConvexSet& Y) { return watched([&] { return X & Y; }); })
       .def("intersect",
            [](const ConvexSet& X, py::handle R, const ConvexSet& Y) {
              const Matrix made = matrix_of(R, "R");
-             return unlocked([&] { return X.intersect(made, Y); });
+             return watched([&] { return X.intersect(made, Y); });
            })
       .def("correct",
            [](const ConvexSet& X, py::handle C, py::handle y, const ConvexSet& V) {
              const Matrix map = matrix_of(C, "C");
              const Vector value = vector_of(y, "y");
-             return unlocked([&] { return X.correct(map, value, V); });
+             return watched([&] { return X.correct(map, value, V); });
            })
       .def("product", [](const ConvexSet& X,
-                         const ConvexSet& Y) { return unlocked([&] { return X.product(Y); }); })
+                         const ConvexSet& Y) { return watched([&] { return X.product(Y); }); })
       .def("convex_hull",
            [](const ConvexSet& X, const ConvexSet& Y) {
-             return unlocked([&] { return X.convex_hull(Y); });
+             return watched([&] { return X.convex_hull(Y); });
            })
       .def("reduce", [](const ConvexSet& X, py::handle generators, py::handle constraints) {
         const Budget budget{budget_of(generators, "generators"),
                             budget_of(constraints, "constraints")};
-        return unlocked([&] { return X.reduce(budget.generators, budget.constraints); });
+        return watched([&] { return X.reduce(budget.generators, budget.constraints); });
       });
 }
 
@@ -244,18 +262,18 @@ void bind_sets(py::module_& module) {
       .def("hull", &hull_of)
       .def("volume",
            [](const ConvexSet& X) {
-             const Volume found = unlocked([&] { return X.volume(); });
+             const Volume found = watched([&] { return X.volume(); });
              return py::make_tuple(found.value, found.exact);
            })
       .def("vertices",
            [](const ConvexSet& X) {
-             const Matrix found = unlocked([&] { return X.vertices(); });
+             const Matrix found = watched([&] { return vertices_of(X); });
              return array_of(found);
            })
       .def("gauge",
            [](const ConvexSet& X, py::handle x) {
              const Vector point = vector_of(x, "x");
-             const Interval found = unlocked([&] { return X.gauge(point); });
+             const Interval found = watched([&] { return X.gauge(point); });
              return py::make_tuple(found.lower, found.upper);
            })
       .def("__str__", [](const ConvexSet& X) { return to_string(X); });
