@@ -10,8 +10,9 @@ import numpy as np
 
 from . import _cordon
 from .answers import Answer
+from .arguments import text
 from .errors import Error
-from .written import Model, component_json, read
+from .written import Model, component_json, read, study_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -59,9 +60,11 @@ def design_input(type: str, model: Model,
     """Designs an input for the modes of a model; parameters have the names of studies."""
     pipeline = {"name": "design", "backend": component_json(backend, where="backend"),
                 "designer": component_json(type, parameters, "designer")}
-    return _designs(read(model.study([pipeline]), needs_data=False), "design")[0]
+    study = Model.given(model).study([pipeline])
+    return _designs(read(study, needs_data=False), "design")[0]
 
 
 def designs_of(study: "Study", pipeline: str = "") -> List[Design]:
     """The designs of a study's pipelines with a designer, or of one of them."""
-    return _designs(study.checked(needs_data=False), pipeline)
+    given = study_of(study).checked(needs_data=False)
+    return _designs(given, text(pipeline, "pipeline", "designed"))

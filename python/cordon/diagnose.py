@@ -8,9 +8,10 @@ from typing import (TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTupl
                     Sequence, Union)
 
 from . import _cordon
-from .samples import samples
+from .arguments import count, flag
+from .samples import missing_outputs, samples
 from .sets import Set
-from .written import Model, component_json, read
+from .written import Model, component_json, pipeline_of, read
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -71,14 +72,14 @@ class Diagnoser:
                  **parameters: Any) -> None:
         pipeline = {"name": "diagnoser", "backend": component_json(backend, where="backend"),
                     "diagnoser": component_json(type, parameters, "diagnoser")}
-        self._made = _cordon.Diagnoser(read(model.study([pipeline]), needs_data=False), 0)
+        study = Model.given(model).study([pipeline])
+        self._made = _cordon.Diagnoser(read(study, needs_data=False), 0)
 
     @classmethod
     def of(cls, study: "Study", pipeline: Union[str, int] = 0) -> "Diagnoser":
         """The diagnoser of a study's pipeline."""
         diagnoser = object.__new__(cls)
-        diagnoser._made = _cordon.Diagnoser(study.checked(needs_data=False),
-                                            study.index_of(pipeline))
+        diagnoser._made = _cordon.Diagnoser(*pipeline_of(study, pipeline))
         return diagnoser
 
     @property
@@ -93,18 +94,29 @@ class Diagnoser:
 
     def start(self, k: int = 0) -> None:
         """Begins anew at time k, in the nominal mode."""
-        self._made.start(k)
+        self._made.start(count(k, "k"))
 
     def step(self, u: "ArrayLike | None", y: "ArrayLike", missing: Sequence[int] = ()) -> Diagnosis:
         """Takes the sample of the next time, as `Observer.step` does."""
-        return Diagnosis(self._made.step(u, y, missing), self.modes)
+        return Diagnosis(self._made.step(u, y, missing_outputs(missing)), self.modes)
 
     def run(self, u: "ArrayLike | None", y: "ArrayLike",
             nan_is_missing: bool = False) -> Iterator[Diagnosis]:
         """Steps over rows, as `Observer.run` does."""
         return (self.step(*sample) for sample in samples(u, y, nan_is_missing))
 
+    def diagnoses(self, u: "ArrayLike | None", y: "ArrayLike",
+                  nan_is_missing: bool = False) -> List[Diagnosis]:
+        """Takes all rows in one go, as `Observer.estimates` does."""
+        missing, modes = flag(nan_is_missing, "nan_is_missing"), self.modes
+        return [Diagnosis(found, modes) for found in self._made.diagnoses(u, y, missing)]
+
     def guarantees(self) -> Optional[Dict[str, Any]]:
         """What can be said before any experiment (docs/results_format.md); None: nothing."""
         found = self._made.guarantees()
         return None if found is None else json.loads(found)
+
+    def __repr__(self) -> str:
+        made = self._made
+        return (f"<diagnoser {made.type}: modes {', '.join(made.modes)}, {made.backend}, next "
+                f"sample k = {made.next}>")

@@ -38,5 +38,9 @@ class ArgumentError(Error, ValueError):
     "not_finite" or "invalid"."""
 
 
+class ArgumentTypeError(ArgumentError, TypeError):
+    """An argument of a wrong kind; a `TypeError` as well."""
+
+
 class InputError(Error, ValueError):
     """A study, an argument or a file that is wrong, with all its problems in `problems`."""

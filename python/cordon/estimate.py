@@ -13,10 +13,11 @@ from typing import (TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTupl
 
 from . import _cordon
 from .answers import Answer
+from .arguments import count, flag
 from .certificates import Certificate, Statement
-from .samples import samples
+from .samples import missing_outputs, samples
 from .sets import Hull, Set, _set
-from .written import Model, component_json, read
+from .written import Model, component_json, pipeline_of, read
 
 if TYPE_CHECKING:
     import numpy as np
@@ -76,25 +77,25 @@ class Observer:
                  **parameters: Any) -> None:
         pipeline = {"name": "observer", "backend": component_json(backend, where="backend"),
                     "observer": component_json(type, parameters, "observer")}
-        self._made = _cordon.Observer(read(model.study([pipeline]), needs_data=False), 0)
+        study = Model.given(model).study([pipeline])
+        self._made = _cordon.Observer(read(study, needs_data=False), 0)
 
     @classmethod
     def of(cls, study: "Study", pipeline: Union[str, int] = 0) -> "Observer":
         """The observer of a study's pipeline."""
         observer = object.__new__(cls)
-        observer._made = _cordon.Observer(study.checked(needs_data=False),
-                                          study.index_of(pipeline))
+        observer._made = _cordon.Observer(*pipeline_of(study, pipeline))
         return observer
 
     def start(self, X0: Optional[Set] = None, k: int = 0) -> None:
         """Begins anew at time k, from X0 in place of the model's initial set."""
-        self._made.start(None if X0 is None else _set(X0, "X0"), k)
+        self._made.start(None if X0 is None else _set(X0, "X0"), count(k, "k"))
 
     def step(self, u: "ArrayLike | None", y: "ArrayLike", missing: Sequence[int] = ()) -> Estimate:
         """Takes the sample of the next time: the input u_k (None: the model has none) and the
         outputs y_k. Outputs without a value are named by their indices in `missing`; NaN elsewhere
         is refused."""
-        return Estimate(*self._made.step(u, y, missing))
+        return Estimate(*self._made.step(u, y, missing_outputs(missing)))
 
     def run(self, u: "ArrayLike | None", y: "ArrayLike",
             nan_is_missing: bool = False) -> Iterator[Estimate]:
@@ -107,7 +108,8 @@ class Observer:
         """Takes all rows in one go, as `run` does one by one, and returns all estimates: the way
         for long records, and for several observers in threads, which wait for each other
         otherwise."""
-        return [Estimate(*found) for found in self._made.estimates(u, y, nan_is_missing)]
+        missing = flag(nan_is_missing, "nan_is_missing")
+        return [Estimate(*found) for found in self._made.estimates(u, y, missing)]
 
     def replace(self, X: Set) -> None:
         """Replaces the set of states at the time of the last sample."""
@@ -135,8 +137,14 @@ class Observer:
 
     @property
     def contradiction(self) -> Optional[Dict[str, Any]]:
-        """What the last sample contradicts, if its estimate is the first that is proven empty."""
+        """What the data contradict, since the observer began: of the first sample whose estimate is
+        proven empty, or the last one of which outputs were left out. None: nothing."""
         return self._made.contradiction
+
+    def __repr__(self) -> str:
+        made = self._made
+        return (f"<observer {made.type}: {made.states} states, {made.backend}, next sample k = "
+                f"{made.next}>")
 
     @property
     def left_out(self) -> List[int]:

@@ -26,8 +26,18 @@ import numpy as np
 
 from . import _cordon
 from .answers import Answer
+from .arguments import choice, count, flag, mapping, text, told, wrong_kind
+from .errors import ArgumentError
 from .estimate import Estimate
 from .sets import Set
+
+
+__all__ = ["Law", "LinearModel", "Metric", "Observer", "Parameter", "Plant", "Sample", "conform",
+           "register"]
+
+
+def __dir__() -> List[str]:
+    return __all__
 
 
 class Parameter(NamedTuple):
@@ -177,14 +187,50 @@ def register(component: Made) -> Made:
     bases = (Observer, Metric, Plant)
     is_one: bool = isinstance(component, type) and issubclass(component, bases)
     if not is_one:
-        raise TypeError("register takes a class that derives from Observer, Metric or Plant")
+        wrong_kind("register", "a class that derives from Observer, Metric or Plant is needed",
+                   component)
     sentence = (component.__doc__ or "").strip().split("\n")[0].rstrip(".")
     if not component.name or not sentence:
-        raise ValueError(f"{component.__name__} needs a `name`, and a docstring of its own")
-    parameters = [(name, p.kind, p.doc, p.default, p.lowest, p.highest, list(p.choices), p.required)
-                  for name, p in component.parameters.items()]
-    _cordon.register_type(component.kind, component, component.name, sentence, parameters)
+        raise ArgumentError(f"{component.__name__} needs a `name`, and a docstring of its own")
+    where = f"{component.__name__}.parameters"
+    example = '{"gain": Parameter("real", "Gain of the error", 0.5, 0, 1)}'
+    parameters = [_checked(f"{where}[{name!r}]", text(name, where, "gain"), given)
+                  for name, given in mapping(component.parameters, where, example).items()]
+    _cordon.register_type(component.kind, component, text(component.name, "name", "my_observer"),
+                          sentence, parameters)
     return component
+
+
+#: Of parameters by kind: what a default is, and an example of one.
+_DEFAULTS: Dict[str, Tuple[Tuple[type, ...], str]] = {
+    "integer": ((int, np.integer), "an integer"),
+    "real": ((int, float, np.integer, np.floating), "a number"),
+    "flag": ((bool, np.bool_), "True or False"), "text": ((str,), "a text"),
+    "choice": ((str,), "one of the choices"),
+}
+_KINDS = [*_DEFAULTS, "vector", "matrix", "set"]
+
+
+def _checked(where: str, name: str, p: object) -> Tuple[Any, ...]:
+    """What a parameter is registered by."""
+    if not isinstance(p, Parameter):
+        wrong_kind(where, 'a Parameter is needed, as Parameter("integer", "What it is for", 3)', p)
+    choice(p.kind, f"{where}, kind", _KINDS)
+    text(p.doc, f"{where}, doc", "What it is for")
+    kinds, needed = _DEFAULTS.get(p.kind, ((), ""))
+    is_bool = isinstance(p.default, (bool, np.bool_)) and p.kind != "flag"
+    if kinds and p.default is not None and (is_bool or not isinstance(p.default, kinds)):
+        wrong_kind(f"{where}, default", f"{needed} is needed", p.default)
+    if not kinds and p.default is not None:
+        raise ArgumentError(f"{where}, default: a {p.kind} has none; take None, and look in "
+                            "`settings` whether it is there")
+    if p.kind == "choice" and (not p.choices or p.default not in p.choices):
+        raise ArgumentError(f"{where}: a choice has `choices`, and one of them is its default")
+    for limit, value in (("lowest", p.lowest), ("highest", p.highest)):
+        if isinstance(value, bool) or not isinstance(value, _DEFAULTS["real"][0]):
+            wrong_kind(f"{where}, {limit}", "a number is needed", value)
+    return (name, p.kind, p.doc, p.default, float(p.lowest), float(p.highest), list(p.choices),
+            flag(p.required, f"{where}, required"))
 
 
 class Law(NamedTuple):
@@ -204,7 +250,14 @@ def conform(name: str, kind: str = "observer", *, laws: str = "*", seed: int = 1
     """Checks the laws of a kind on random systems, as `cordon conform` does, in this process: a
     component that crashes or hangs takes the process along. `tell` hears of each law that
     failed."""
-    found = [Law(*result) for result in _cordon.conform(kind, name, parameters, laws, seed, cases)]
+    if tell is not None and not callable(tell):
+        wrong_kind("tell", "a function of a text is needed, as print", tell)
+    found = [Law(*result) for result in _cordon.conform(
+        choice(kind, "kind", _cordon.kinds()), text(name, "name", "prediction_correction"),
+        parameters, text(laws, "laws", "*"), count(seed, "seed"), count(cases, "cases", 1))]
+    if not found:
+        raise ArgumentError(f"laws: none of the laws of {kind}s is called {laws!r}; '*' is all of "
+                            "them (docs/conformance.md)")
     for law in found:
         if tell is not None and law.status == "failed":
             tell(f"{law.law}: {law.reason}\n{law.witness}")
@@ -221,5 +274,5 @@ def _with_sets(parameters: Dict[str, Any]) -> Dict[str, Any]:
 
 def _returned(X: Any) -> Any:
     if not isinstance(X, Set):
-        raise TypeError(f"a cordon set is to be returned, not {type(X).__name__}")
+        raise TypeError(f"a cordon set is to be returned, not {told(X)}")
     return X._set

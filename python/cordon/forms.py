@@ -165,7 +165,28 @@ def has_solution(form: Form, kind: str, data: List[Fraction]) -> bool:
     if found is None:
         return False
     x = point_of(form, found)
-    return all(v <= h for v, h in zip(rational.product(form.H, x), form.h))
+    if all(v <= h for v, h in zip(rational.product(form.H, x), form.h)):
+        return True
+    slack, factors = with_slack(form, x)
+    return solution_near(slack, data + factors) is not None
+
+
+def with_slack(form: Form, x: List[Fraction]) -> Tuple[Form, List[Fraction]]:
+    """The form with a factor per row of H x ≤ h that takes up what is left of it, and no rows, with
+    these factors near x. Bounds of what is left are wide: a solution gives one of the rows."""
+    left = [h - v for v, h in zip(rational.product(form.H, x), form.h)]
+    half = [abs(v) + abs(h) + 1 for v, h in zip(left, form.h)]
+    count, zero = len(left), Fraction(0)
+    at = rational.product(form.H, form.c)
+    lines = [columns_of(form.M, row, form.lines) for row in form.H]
+    factors = [columns_of(form.G, row, form.generators) for row in form.H]
+    slack = [[half[i] if j == i else zero for j in range(count)] for i in range(count)]
+    made = form.copy_of(
+        generators=form.generators + count, G=[row + [zero] * count for row in form.G],
+        S=form.S + lines, A=[row + [zero] * count for row in form.A] +
+        [own + more for own, more in zip(factors, slack)],
+        b=form.b + [h - v - r for h, v, r in zip(form.h, at, half)], H=[], h=[])
+    return made, [v / r - 1 for v, r in zip(left, half)]
 
 
 def point_of(form: Form, factors: List[Fraction]) -> List[Fraction]:

@@ -11,11 +11,14 @@ from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTuple
 import numpy as np
 
 from . import _cordon
-from .errors import Error
+from .arguments import count, suggestion, wrong_kind
+from .errors import ArgumentError, Error
 from .sets import Set
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from .study import SweepResults
 
     Floats = NDArray[np.float64]
 
@@ -45,7 +48,8 @@ class Pipeline:
         self.written = found
         self.name: str = found["name"]
         self.backend: str = found["backend"]
-        self.summary: Dict[str, Any] = found["summary"]
+        self.summary: Dict[str, Any] = {name: float(value) if value in ("inf", "-inf") else value
+                                        for name, value in found["summary"].items()}
         self.steps: List[Dict[str, Any]] = found.get("steps", [])
 
     @property
@@ -73,7 +77,8 @@ class Pipeline:
         numbers, or of objects."""
         known = sorted({key for step in self.steps for key in step})
         if name not in known:
-            raise KeyError(f"steps have no {name!r}; they have {', '.join(known)}")
+            raise KeyError(f"steps have no {name!r}; they have {', '.join(known)}" if known else
+                           "the run has kept no steps")
         return _column([step.get(name) for step in self.steps])
 
     @property
@@ -131,7 +136,8 @@ class Results(Mapping[str, Pipeline]):
 
     def __getitem__(self, name: str) -> Pipeline:
         if name not in self._pipelines:
-            raise KeyError(f"there is no pipeline {name!r}; there are {', '.join(self._pipelines)}")
+            names = list(self._pipelines)
+            raise KeyError(f"there is no pipeline {name!r}; {suggestion(str(name), names)}")
         return self._pipelines[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -158,7 +164,10 @@ class Results(Mapping[str, Pipeline]):
     def verify(self, every: int = 1, progress: Any = None) -> Dict[str, Any]:
         """Checks every `every`-th step again, as `cordon verify` does: per pipeline how many checks
         held and how many stayed undecided, and the first "violation", None where there is none."""
-        return _cordon.verify(self.directory, every, progress)
+        if progress is not None and not callable(progress):
+            wrong_kind("progress", "a function of (pipeline, done, in all) is needed, or None",
+                       progress)
+        return _cordon.verify(self.directory, count(every, "every", 1), progress)
 
     def summary(self) -> Any:
         """A pandas frame with the numbers of all pipelines (summary.csv)."""
@@ -204,9 +213,16 @@ class Comparison(NamedTuple):
         return pandas.DataFrame(self.rows, columns=ComparedNumber._fields)
 
 
-def compare(*results: Union["Results", str, "os.PathLike[str]"]) -> Comparison:
+def compare(*results: Union["Results", "SweepResults", str, "os.PathLike[str]"]) -> Comparison:
     """Compares two or more finished runs or sweeps, by names of pipelines and values of axes."""
-    directories = [one.directory if isinstance(one, Results) else Path(one) for one in results]
+    directories = []
+    for one in results:
+        where = getattr(one, "directory", one)  # of runs and of sweeps
+        if not isinstance(where, (str, os.PathLike)):
+            wrong_kind("results", "finished runs are needed, or their directories", one)
+        directories.append(Path(where))
+    if len(directories) < 2:
+        raise ArgumentError(f"results: two or more are compared, here there are {len(directories)}")
     told = _cordon.compare(directories)
     return Comparison(told["runs"], told["axes"], [ComparedNumber(*row) for row in told["rows"]],
                       told["warnings"])

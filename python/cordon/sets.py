@@ -14,13 +14,16 @@ refused. Errors are `cordon.Error`.
 
 from __future__ import annotations
 
+import math
 from typing import (TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Optional, Tuple, Union)
 
 import numpy as np
 
-from . import _cordon
+from . import _cordon, arguments
 from .answers import Answer
 from .certificates import Certificate, Statement
+from .errors import ArgumentError, Error
+from .refused import Refused
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -57,14 +60,14 @@ class Volume(NamedTuple):
     exact: bool
 
 
-class Set:
+class Set(Refused):
     """A closed convex subset of Rⁿ in some representation; immutable, shared by copies, used from
     several threads. Made by `interval`, `zonotope`, `constrained_zonotope`, `line_zonotope`,
     `strip`, `point`, `space`, `empty`, `polytope`, and by operations:
 
         A @ X     {A x}, A of shape (m, n)          X + Y   Minkowski sum; Y a set or a vector
         s * X     {s x}, s a number                 X & Y   intersection
-        -X        {-x}
+        -X        {-x}                              X / s   {x / s}, s a power of two
     """
 
     __slots__ = ("_set", "_view", "_parameters", "_bounds")
@@ -74,6 +77,7 @@ class Set:
                  parameters: Optional[Mapping[str, Any]] = None) -> None:
         if not isinstance(made, _cordon.ConvexSet):
             raise TypeError("sets are made by cordon.zonotope, cordon.interval and so on")
+        arguments.expect_few(made.dim)
         self._set = made
         self._parameters = dict(parameters or {})  # of the representation, for copies elsewhere
         self._view: Optional[Dict[str, Any]] = None
@@ -129,7 +133,8 @@ class Set:
 
     def as_(self, representation: str, **parameters: Any) -> "Set":
         """An enclosure in another representation ("polytope", rounding="outward", …)."""
-        return Set(self._set.as_(representation, parameters), parameters)
+        name = arguments.text(representation, "representation", "zonotope")
+        return Set(self._set.as_(name, parameters), parameters)
 
     def __rmatmul__(self, A: ArrayLike) -> "Set":
         return self._made(self._set.map(A))
@@ -140,6 +145,14 @@ class Set:
         return self._made(self._set.scale(s))
 
     __mul__ = __rmul__
+
+    def __truediv__(self, s: float) -> "Set":
+        if not isinstance(s, (int, float, np.integer, np.floating)) or isinstance(s, bool):
+            raise TypeError(f"a set is divided by a number, not by {arguments.told(s)}")
+        if s == 0 or abs(math.frexp(s)[0]) != 0.5:
+            raise ArgumentError(f"X / {s}: 1 / {s} is no number of 64 bits, and {{x / {s}}} no set "
+                                f"that is known exactly; (1 / {s}) * X takes the nearest number")
+        return self._made(self._set.scale(1.0 / s))
 
     def __neg__(self) -> "Set":
         return self._made(self._set.scale(-1.0))
@@ -257,6 +270,10 @@ class Set:
     def vertices(self) -> Floats:
         """The vertices of a bounded polytope, n ≤ 6, shape (count, n), computed in exact arithmetic
         and rounded to nearest; in two dimensions counter-clockwise."""
+        if not self.has_exact_form:
+            raise Error(f'vertices: this set of "{self.representation}" has no exact form in '
+                        'doubles; take those of an enclosure, X.as_("constrained_zonotope").vertices()',
+                        "unsupported")
         found = np.ascontiguousarray(self._set.vertices().T)
         if self.dim == 2 and len(found) > 2:
             middle = found - found.mean(axis=0)
@@ -299,7 +316,7 @@ class Set:
 
 def _set(given: object, name: str) -> _cordon.ConvexSet:
     if not isinstance(given, Set):
-        raise TypeError(f"{name}: a cordon set is needed, not {type(given).__name__}")
+        arguments.wrong_kind(name, "a cordon set is needed, as cordon.interval([-1], [1])", given)
     return given._set
 
 
@@ -313,6 +330,7 @@ def interval(lower: ArrayLike, upper: ArrayLike) -> Set:
     """{x : lower ≤ x ≤ upper}, shapes (n,); infinite bounds in both directions only. Kept as centre
     and radius, which are rounded outward: the set may be larger by a unit in the last place.
     Models and pickles have the bounds as they were given."""
+    arguments.expect_few(lower)
     made = Set(_cordon.ConvexSet.box(lower, upper))
     made._bounds = np.array(lower, dtype=np.float64), np.array(upper, dtype=np.float64)
     return made
@@ -344,17 +362,22 @@ def strip(rho: ArrayLike, d: float, sigma: float) -> Set:
 
 def point(x: ArrayLike, representation: str = "zonotope", **parameters: Any) -> Set:
     """{x}."""
-    return Set(_cordon.ConvexSet.point(x, representation, parameters), parameters)
+    name = arguments.text(representation, "representation", "zonotope")
+    return Set(_cordon.ConvexSet.point(x, name, parameters), parameters)
 
 
 def space(n: int, representation: str = "line_zonotope", **parameters: Any) -> Set:
     """Rⁿ."""
-    return Set(_cordon.ConvexSet.space(n, representation, parameters), parameters)
+    name = arguments.text(representation, "representation", "line_zonotope")
+    count = arguments.count(n, "n", 0, arguments.MOST_COORDINATES)
+    return Set(_cordon.ConvexSet.space(count, name, parameters), parameters)
 
 
 def empty(n: int, representation: str = "line_zonotope", **parameters: Any) -> Set:
     """∅ in Rⁿ."""
-    return Set(_cordon.ConvexSet.empty(n, representation, parameters), parameters)
+    name = arguments.text(representation, "representation", "line_zonotope")
+    count = arguments.count(n, "n", 0, arguments.MOST_COORDINATES)
+    return Set(_cordon.ConvexSet.empty(count, name, parameters), parameters)
 
 
 def polytope(H: ArrayLike, h: ArrayLike, representation: str = "polytope",
@@ -362,4 +385,5 @@ def polytope(H: ArrayLike, h: ArrayLike, representation: str = "polytope",
     """{x : H x ≤ h}, shapes (r, n) and (r,), enclosed by a representation: exactly by "polytope",
     and by "constrained_zonotope" and "line_zonotope" where the set is bounded, or unbounded along
     lines only, and no number has to be rounded."""
-    return Set(_cordon.ConvexSet.inequalities(H, h, representation, parameters), parameters)
+    name = arguments.text(representation, "representation", "polytope")
+    return Set(_cordon.ConvexSet.inequalities(H, h, name, parameters), parameters)

@@ -19,6 +19,7 @@ from typing import (Any, Callable, Dict, Iterator, List, Mapping, MutableMapping
                     Optional, Union)
 
 from . import _cordon
+from .arguments import choice, count, flag, index, mapping, suggestion, text, wrong_kind
 from .errors import Error, InputError, Problem
 from .results import Results
 from .written import read, to_json
@@ -37,15 +38,18 @@ class Study(MutableMapping[str, Any]):
             self._data: Dict[str, Any] = dict(source)
             self.file = Path(file) if file is not None else Path("study")
             return
+        if not isinstance(source, (str, os.PathLike)):
+            wrong_kind("source", 'the path of a study is needed, as "study.json", or a dictionary',
+                       source)
         self.file = Path(file) if file is not None else Path(source)
-        text = Path(source).read_text(encoding="utf-8-sig")
+        written = Path(source).read_text(encoding="utf-8-sig")
         try:
-            self._data = json.loads(text)
+            self._data = json.loads(written)
         except ValueError:
-            _cordon.read_study(text, self.file, [], True, False)  # tells place and reason
+            _cordon.read_study(written, self.file, [], True, False)  # tells place and reason
             raise
         if not isinstance(self._data, dict):
-            _cordon.read_study(text, self.file, [], True, False)
+            _cordon.read_study(written, self.file, [], True, False)
 
     def __getitem__(self, key: str) -> Any:
         return self._data[key]
@@ -74,11 +78,11 @@ class Study(MutableMapping[str, Any]):
 
     def index_of(self, pipeline: Union[str, int]) -> int:
         """Where a pipeline stands."""
-        if isinstance(pipeline, int):
-            return pipeline
         names = self.pipelines
+        if not isinstance(pipeline, str):
+            return index(pipeline, "pipeline", "pipeline", len(names))
         if pipeline not in names:
-            raise KeyError(f"there is no pipeline {pipeline!r}; there are {', '.join(names)}")
+            raise KeyError(f"there is no pipeline {pipeline!r}; {suggestion(pipeline, names)}")
         return names.index(pipeline)
 
     def copy(self) -> "Study":
@@ -93,7 +97,10 @@ class Study(MutableMapping[str, Any]):
     def checked(self, settings: Mapping[str, Any] = {}, needs_data: bool = True,
                 trusts_plugins: bool = False) -> _cordon.Study:
         """The study as the library knows it; raises `InputError` with all problems."""
-        written = [f"{path}={json.dumps(to_json(value))}" for path, value in settings.items()]
+        example = '{"/data/simulate/seed": 3}'
+        written = [f"{text(path, 'a path of settings', '/data/simulate/seed')}="
+                   f"{json.dumps(to_json(value, str(path)))}"
+                   for path, value in mapping(settings, "settings", example).items()]
         return read(self._data, self.file, written, needs_data, trusts_plugins)
 
     def problems(self) -> List[Problem]:
@@ -114,6 +121,9 @@ class Study(MutableMapping[str, Any]):
         "last" or "none". `progress`: True for a bar (tqdm where it is installed), or a function of
         (pipeline, done, in all). Ctrl-C ends the run, and leaves earlier results as they were.
         """
+        choice(sets, "sets", ["all", "last", "none"])
+        text(pipeline, "pipeline", "name of a pipeline")
+        flag(report, "report")
         study = self.checked(settings)
         if study.has_sweep:
             raise Error("the study has a sweep: run it by sweep()")
@@ -138,9 +148,10 @@ class Study(MutableMapping[str, Any]):
         study = self.checked()
         if not study.has_sweep:
             raise Error("the study has no sweep: run it by run()")
-        count = jobs if jobs is not None else os.cpu_count() or 1
+        used = count(jobs, "jobs", 1, 1024) if jobs is not None else os.cpu_count() or 1
         with _Bar(progress, ["points"]) as bar:
-            told = _cordon.sweep(study, Path(out), count, resume, report, bar.tell)
+            told = _cordon.sweep(study, Path(out), used, flag(resume, "resume"),
+                                 flag(report, "report"), bar.tell)
         return SweepResults(Path(out), told["points"], told["failed"], told["violated"])
 
 
@@ -168,7 +179,7 @@ class _Bar:
         self.tell: Optional[Progress] = None
         if callable(progress):
             self.tell = progress
-        elif progress:
+        elif flag(progress, "progress"):
             self.tell = self._show
 
     def _show(self, pipeline: int, done: int, total: int) -> None:

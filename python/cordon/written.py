@@ -6,22 +6,30 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from . import _cordon
-from .errors import Error
+from .arguments import told, wrong_kind
+from .errors import ArgumentError, ArgumentTypeError, Error
 from .sets import Set
+
+if TYPE_CHECKING:
+    from .study import Study
 
 
 def set_json(X: Set) -> Dict[str, Any]:
-    """A set with an exact form, as studies write sets."""
+    """A set as studies write sets: with an exact form, or one of "polytope", whose numbers are
+    rounded outward where they are none of 64 bits."""
     if X._bounds is not None:
         return {"type": "box", **{name: to_json(bound) for name, bound in
                                   zip(("lower", "upper"), X._bounds)}}
     view = X.view()
-    if view["claim"] != "exact" or view["h"].size > 0:
+    if X.representation == "polytope":
+        if view["h"].size > 0:
+            return {"type": "polytope", "H": view["H"].tolist(), "h": view["h"].tolist()}
+    elif view["claim"] != "exact" or view["h"].size > 0:
         raise Error(f"a set of \"{X.representation}\" has no exact form that a study could hold: "
                     "take an enclosure, X.as_(\"constrained_zonotope\")", "unsupported")
     made: Dict[str, Any] = {"type": "zonotope", "center": view["c"].tolist()}
@@ -55,11 +63,12 @@ def to_json(value: Any, where: str = "") -> Any:
     if isinstance(value, (float, np.floating)):
         number = float(value)
         if math.isnan(number):
-            raise ValueError(f"{where or 'a value'} is NaN")
+            raise ArgumentError(f"{where or 'a value'} is NaN; a study holds none", "not_finite")
         return number if math.isfinite(number) else "inf" if number > 0 else "-inf"
     if isinstance(value, np.ndarray):
         if value.dtype.kind not in "fiub":
-            raise TypeError(f"{where or 'an array'}: real numbers are needed, not {value.dtype}")
+            raise ArgumentTypeError(f"{where or 'an array'}: real numbers are needed, not "
+                                    f"{value.dtype}")
         return to_json(value.tolist(), where)
     if isinstance(value, Mapping):
         return {str(key): to_json(entry, f"{where}/{key}") for key, entry in value.items()}
@@ -67,12 +76,15 @@ def to_json(value: Any, where: str = "") -> Any:
         return [to_json(entry, f"{where}/{i}") for i, entry in enumerate(value)]
     if hasattr(value, "to_json"):
         return value.to_json()
-    raise TypeError(f"{where or 'a value'}: {type(value).__name__} is nothing that a study holds")
+    raise ArgumentTypeError(f"{where or 'a value'}: {told(value)} is nothing that a study holds; "
+                            "numbers, texts, arrays, sets, lists and dictionaries are")
 
 
 def component_json(component: Union[str, Mapping[str, Any]], parameters: Mapping[str, Any] = {},
                    where: str = "") -> Any:
     """A component by its name, or as {"type": …}, with parameters; None leaves one out."""
+    if not isinstance(component, (str, Mapping)):
+        wrong_kind(where, 'a name is needed, or {"type": name} with parameters', component)
     written = dict(component) if isinstance(component, Mapping) else {"type": component}
     written.update({name: value for name, value in parameters.items() if value is not None})
     return to_json(written, where)
@@ -86,6 +98,19 @@ def read(study: Mapping[str, Any], file: Optional[Path] = None, settings: Sequen
                               needs_data, trusts_plugins)
 
 
+def study_of(given: object) -> "Study":
+    """What is given for a study, if it is one."""
+    from .study import Study
+    if not isinstance(given, Study):
+        wrong_kind("study", 'a cordon.Study is needed, as cordon.Study("study.json")', given)
+    return given
+
+
+def pipeline_of(study: "Study", pipeline: Union[str, int]) -> Tuple[_cordon.Study, int]:
+    """A study as the library knows it, and where a pipeline stands."""
+    return study_of(study).checked(needs_data=False), study.index_of(pipeline)
+
+
 class Model:
     """A system and its bounds, from what studies write in "system" (docs/study_format.md):
 
@@ -94,7 +119,8 @@ class Model:
     Matrices have the shapes given there; sets are `cordon` sets, or dictionaries as in studies.
     `type` is "descriptor" where there is an E, "nonlinear" where there are formulas `f`, else
     "lti".
-    Wrong arguments raise `InputError` where the model is used, and by `check()`.
+    Wrong arguments raise `InputError` where the model is used, and by `check()`. Of a set of
+    "polytope" the model has an enclosure, larger by rounding only.
 
         model = cordon.Model(A=[[1, 0.1], [0, 1]], C=[[1, 0]], X0=cordon.interval([-1, -1], [1, 1]),
                              W=cordon.interval([-0.01, -0.02], [0.01, 0.02]),
@@ -107,6 +133,14 @@ class Model:
         self.system: Dict[str, Any] = to_json(
             {"type": type, **{name: value for name, value in system.items() if value is not None}},
             "system")
+
+    @staticmethod
+    def given(model: object) -> "Model":
+        """What is given for a model, if it is one."""
+        if not isinstance(model, Model):
+            wrong_kind("model", "a cordon.Model is needed, as cordon.Model(A=[[1]], C=[[1]], ...); "
+                       "of a dictionary it is cordon.Model(**system)", model)
+        return model
 
     def to_json(self) -> Dict[str, Any]:
         """The "system" of a study."""

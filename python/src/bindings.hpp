@@ -10,6 +10,7 @@
 #include "cordon/core/answer.hpp"
 #include "cordon/core/box.hpp"
 #include "cordon/core/line_form.hpp"
+#include "cordon/registry/plugin.hpp"
 #include "cordon/registry/schema.hpp"
 
 namespace cordon::python {
@@ -21,6 +22,10 @@ void bind_sets(py::module_& module);
 void bind_components(py::module_& module);
 void bind_studies(py::module_& module);
 void bind_extensions(py::module_& module);
+void bind_info(py::module_& module);
+
+/// Of a component; an unknown name is an error with a suggestion.
+const ComponentInfo& info_of(const std::string& kind, const std::string& name);
 
 /// ("yes", (kind, data, margin) or None): what the package makes an Answer of.
 py::tuple answer_of(Answer answer, const Certificate& why);

@@ -54,7 +54,11 @@ std::vector<Index> missing_of(py::handle given) {
           "missing names outputs by their indices, from 0; those of a mask are "
           "np.flatnonzero(mask)");
     }
-    missing.push_back(one.cast<Index>());
+    if (PyIndex_Check(one.ptr()) == 0) {
+      throw py::type_error("missing: indices of outputs are needed, as [0], not " +
+                           py::repr(one).cast<std::string>());
+    }
+    missing.push_back(py::reinterpret_steal<py::object>(PyNumber_Index(one.ptr())).cast<Index>());
   }
   std::sort(missing.begin(), missing.end());
   missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
@@ -78,12 +82,44 @@ Sample sample_of(Index k, py::handle u, py::handle y, py::handle outputs) {
   return missing_outputs(std::move(sample), missing);
 }
 
+/// What is told of each row, in one go, without the lock of the interpreter; `next` is the time of
+/// the next sample.
+template <class Told, class Step>
+std::vector<Told> of_rows(py::handle u, py::handle y, bool nan_is_missing, Index& next,
+                          const Step& step) {
+  const Matrix outputs = matrix_of(y, "y");
+  const Matrix inputs = u.is_none() ? Matrix(outputs.rows(), 0) : matrix_of(u, "u");
+  if (inputs.rows() != outputs.rows()) {
+    throw Error(Errc::dimension, "u has " + std::to_string(inputs.rows()) + " samples, y has " +
+                                     std::to_string(outputs.rows()));
+  }
+  if (!nan_is_missing && outputs.array().isNaN().any()) {
+    throw Error(Errc::not_finite,
+                "y holds NaN; where that means a missing output, say nan_is_missing=True");
+  }
+  std::vector<Told> found;
+  Signals signals;
+  unlocked([&] {
+    for (Index i = 0; i < outputs.rows(); ++i, ++next) {
+      signals.look();
+      const Vector row = outputs.row(i);
+      std::vector<Index> missing;
+      for (Index j = 0; j < row.size(); ++j) {
+        if (std::isnan(row[j])) missing.push_back(j);
+      }
+      found.push_back(step(missing_outputs({next, inputs.row(i), row}, missing)));
+    }
+  });
+  return found;
+}
+
 class ObserverHandle {
  public:
   ObserverHandle(StudyHandle study, std::size_t index) : study_(std::move(study)) {
     const PipelineSpec& spec = pipeline_of(*study_, index);
     const EstimationSpec* const estimation = spec.estimation();
     if (!estimation) throw Error(Errc::invalid, "the pipeline has no observer");
+    type_ = estimation->observer.type;
     unlocked([&] {
       backend_ = backend_of(spec);
       observer_ = installed_components().make<ObserverEntry>(
@@ -99,12 +135,13 @@ class ObserverHandle {
       observer_->start(X0 ? std::optional(backend_->import(X0->enclosure())) : std::nullopt);
     });
     next_ = k;
+    contradiction_.reset();
   }
 
   py::tuple step(py::handle u, py::handle y, py::handle missing) {
     const Turn turn(busy_);
     const Sample sample = sample_of(next_, u, y, missing);
-    const Estimate estimate = unlocked([&] { return observer_->step(sample); });
+    const Estimate estimate = unlocked([&] { return stepped(sample); });
     ++next_;
     return told(estimate);
   }
@@ -112,37 +149,22 @@ class ObserverHandle {
   /// All rows in one go, without the lock of the interpreter.
   py::list estimates(py::handle u, py::handle y, bool nan_is_missing) {
     const Turn turn(busy_);
-    const Matrix outputs = matrix_of(y, "y");
-    const Matrix inputs = u.is_none() ? Matrix(outputs.rows(), 0) : matrix_of(u, "u");
-    if (inputs.rows() != outputs.rows()) {
-      throw py::value_error("u has " + std::to_string(inputs.rows()) + " samples, y has " +
-                            std::to_string(outputs.rows()));
-    }
-    if (!nan_is_missing && outputs.array().isNaN().any())
-      throw py::value_error(
-          "y holds NaN; where that means a missing output, say nan_is_missing=True");
-    std::vector<Estimate> found;
-    Signals signals;
-    unlocked([&] {
-      for (Index i = 0; i < outputs.rows(); ++i, ++next_) {
-        signals.look();
-        const Vector row = outputs.row(i);
-        std::vector<Index> missing;
-        for (Index j = 0; j < row.size(); ++j) {
-          if (std::isnan(row[j])) missing.push_back(j);
-        }
-        found.push_back(observer_->step(missing_outputs({next_, inputs.row(i), row}, missing)));
-      }
-    });
     py::list made;
-    for (const Estimate& estimate : found) made.append(told(estimate));
+    for (const Estimate& estimate : of_rows<Estimate>(
+             u, y, nan_is_missing, next_, [&](const Sample& sample) { return stepped(sample); }))
+      made.append(told(estimate));
     return made;
   }
 
   void replace(const ConvexSet& X) {
     const Turn turn(busy_);
     unlocked([&] { observer_->replace(backend_->import(X.enclosure())); });
+    contradiction_.reset();
   }
+
+  const std::string& type() const { return type_; }
+  std::string backend() const { return backend_->info().name; }
+  Index states() const { return study_->model.states(); }
 
   /// Of the last step, in µs.
   py::dict times() const {
@@ -163,13 +185,12 @@ class ObserverHandle {
   }
 
   py::object contradiction() const {
-    const auto& found = observer_->contradiction();
-    if (!found) return py::none();
+    if (!contradiction_) return py::none();
     py::dict made;
-    made["k"] = found->k;
-    made["output"] = found->output;
-    made["distance"] = found->distance;
-    made["before"] = found->before;
+    made["k"] = contradiction_->k;
+    made["output"] = contradiction_->output;
+    made["distance"] = contradiction_->distance;
+    made["before"] = contradiction_->before;
     return made;
   }
 
@@ -178,14 +199,22 @@ class ObserverHandle {
   Index next() const { return next_; }
 
  private:
+  /// What a sample contradicts is known until the next sample; here until the observer begins anew.
+  Estimate stepped(const Sample& sample) {
+    Estimate estimate = observer_->step(sample);
+    if (const auto& found = observer_->contradiction()) contradiction_ = found;
+    return estimate;
+  }
   static py::tuple told(const Estimate& estimate) {
     return py::make_tuple(estimate.k, ConvexSet(estimate.set),
                           answer_of(estimate.consistent, estimate.why));
   }
 
   StudyHandle study_;
+  std::string type_;
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Observer> observer_;
+  std::optional<Contradiction> contradiction_;
   Index next_ = 0;
   std::atomic_flag busy_;
 };
@@ -226,6 +255,7 @@ class DiagnoserHandle {
       if (kind == "diagnoser") wanted = component;
     }
     if (!wanted) throw Error(Errc::invalid, "the pipeline has no diagnoser");
+    type_ = wanted->type, backend_ = spec.backend.type;
     unlocked([&] {
       diagnoser_ = installed_components().make<DiagnoserEntry>(
           wanted->type, {bank_of(*study_), backend_of(spec)}, wanted->params);
@@ -247,6 +277,17 @@ class DiagnoserHandle {
     return diagnosis_of(found);
   }
 
+  /// All rows in one go, without the lock of the interpreter.
+  py::list diagnoses(py::handle u, py::handle y, bool nan_is_missing) {
+    const Turn turn(busy_);
+    py::list made;
+    for (const Diagnosis& found :
+         of_rows<Diagnosis>(u, y, nan_is_missing, next_,
+                            [&](const Sample& sample) { return diagnoser_->step(sample); }))
+      made.append(diagnosis_of(found));
+    return made;
+  }
+
   py::object guarantees() {
     const Turn turn(busy_);
     const auto found = unlocked([&] { return diagnoser_->guarantees(); });
@@ -260,9 +301,12 @@ class DiagnoserHandle {
     return names;
   }
   Index next() const { return next_; }
+  const std::string& type() const { return type_; }
+  const std::string& backend() const { return backend_; }
 
  private:
   StudyHandle study_;
+  std::string type_, backend_;
   std::shared_ptr<Diagnoser> diagnoser_;
   Index next_ = 0;
   std::atomic_flag busy_;
@@ -300,6 +344,9 @@ void bind_components(py::module_& module) {
       .def("step", &ObserverHandle::step)
       .def("estimates", &ObserverHandle::estimates)
       .def("replace", &ObserverHandle::replace)
+      .def_property_readonly("type", &ObserverHandle::type)
+      .def_property_readonly("backend", &ObserverHandle::backend)
+      .def_property_readonly("states", &ObserverHandle::states)
       .def_property_readonly("times", &ObserverHandle::times)
       .def_property_readonly("gains", &ObserverHandle::gains)
       .def_property_readonly("contradiction", &ObserverHandle::contradiction)
@@ -310,13 +357,13 @@ void bind_components(py::module_& module) {
       .def(py::init<StudyHandle, std::size_t>())
       .def("start", &DiagnoserHandle::start)
       .def("step", &DiagnoserHandle::step)
+      .def("diagnoses", &DiagnoserHandle::diagnoses)
+      .def_property_readonly("type", &DiagnoserHandle::type)
+      .def_property_readonly("backend", &DiagnoserHandle::backend)
       .def("guarantees", &DiagnoserHandle::guarantees)
       .def_property_readonly("modes", &DiagnoserHandle::modes)
       .def_property_readonly("next", &DiagnoserHandle::next);
   module.def("design", &design);
-  module.def("components",
-             [](const std::string& kind) { return installed_components().names(kind); });
-  module.def("kinds", [] { return Registry::kinds(); });
 }
 
 }  // namespace cordon::python

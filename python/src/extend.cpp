@@ -323,16 +323,11 @@ void register_type(const std::string& kind, const py::object& type, const std::s
 py::list conform(const std::string& kind, const std::string& name, const py::dict& parameters,
                  const std::string& laws, std::uint64_t seed, Index cases) {
   const Registry& registry = installed_components();
-  const ComponentInfo* const info = registry.info(kind, name);
-  if (!info) {
-    throw Error(Errc::invalid, "there is no " + kind + " \"" + name + "\"; " +
-                                   suggest(name, registry.names(kind)));
-  }
   conformance::Subject subject;
   subject.kind = kind;
   subject.component = name;
   subject.params = params_from(parameters);
-  subject.schema = &info->schema;
+  subject.schema = &info_of(kind, name).schema;
   subject.command = "cordon.conform(\"" + name + "\", kind=\"" + kind + "\")";
   subject.make = [&](const Params& params) { return registry.make<BackendEntry>(name, params); };
   subject.registry = {std::shared_ptr<const void>(), &registry};

@@ -9,4 +9,5 @@ PYBIND11_MODULE(_cordon, module) {
   cordon::python::bind_components(module);
   cordon::python::bind_studies(module);
   cordon::python::bind_extensions(module);
+  cordon::python::bind_info(module);
 }

@@ -66,6 +66,17 @@ def test_contradiction_is_proven():
     assert estimate.consistent.certificate.check()
 
 
+def test_contradictions_are_told_after_all_samples():
+    for go in (co.Observer.estimates, lambda *given: list(co.Observer.run(*given))):
+        observer = co.Observer("prediction_correction", mass(), backend="constrained_zonotope")
+        go(observer, np.zeros((6, 1)), [[0], [0], [9], [0], [0], [0]])
+        assert observer.contradiction["k"] == 2 and observer.contradiction["output"] == 0
+        observer.start()
+        assert observer.contradiction is None
+        go(observer, np.zeros((2, 1)), np.zeros((2, 1)))
+        assert observer.contradiction is None
+
+
 def test_wrong_arguments_have_the_messages_of_studies():
     with pytest.raises(co.InputError) as raised:
         co.Observer("prediction_correction", mass(), max_generatrs=20)
@@ -241,5 +252,37 @@ def test_sets_of_models_are_those_that_were_given():
     observer = co.Observer("prediction_correction", mass(X0=X0), backend="constrained_zonotope")
     estimate = observer.step([0], [0.0], missing=[0])
     assert estimate.hull.upper.tobytes() == X0.hull().upper.tobytes()
-    with pytest.raises(co.Error, match="exact form"):
+    with pytest.raises(co.Error, match=r'X.as_\("constrained_zonotope"\)'):
         mass(X0=co.interval([-1, -1], [1, 1]).as_("ellipsoid").reduce(1))
+
+
+SKEW = np.array([[3, 0.1], [-1, 3.0], [-0.7, -2], [1, 1]])
+
+
+def test_polytopes_bound_models():
+    X0 = co.polytope(SKEW, [1, 1, 1, 0.3])
+    W = 0.1 * np.array([[0.9, 0.1], [0.2, 0.7]]) @ X0  # corners are no doubles any more
+    model = mass(X0=X0, W=W, V=co.polytope([[3], [-7]], [1, 1]))
+    assert model.system["X0"]["type"] == "polytope"
+    model.check()
+    for backend in ("polytope", "constrained_zonotope", "zonotope"):
+        observer = co.Observer("prediction_correction", model, backend=backend)
+        hull = observer.step([0], [0.0], missing=[0]).hull
+        for corner in X0.vertices():
+            assert (hull.lower <= corner).all() and (corner <= hull.upper).all()
+        assert observer.step([0], [0.0]).consistent.yes
+    first = co.Observer("prediction_correction", model, backend="constrained_zonotope").step(
+        [0], [0.0], missing=[0])
+    np.testing.assert_allclose(first.hull.upper, X0.hull().upper, rtol=1e-12)
+    study = co.Study({"cordon": 1, "system": model, "data": {"simulate": {
+                          "steps": 3, "input": [{"type": "constant", "offset": 1}]}},
+                      "pipelines": [{"name": "p", "backend": "polytope",
+                                     "observer": "prediction_correction"}]})
+    study["system"] = {**model.system, "X0": X0}
+    results = study.run()
+    assert results.verify()["violation"] is None
+
+
+def test_half_planes_bound_no_models():
+    with pytest.raises(co.InputError, match="unbounded"):
+        mass(X0=co.polytope([[1, 0]], [1])).check()

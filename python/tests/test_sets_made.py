@@ -2,6 +2,8 @@
 """Representations and constructors; zonotopes computed again by numpy."""
 
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -48,6 +50,74 @@ def test_polytopes_of_every_representation():
     with pytest.raises(co.Error, match="unbounded"):
         co.polytope([[1, 0]], [1], "zonotope")
     assert co.polytope(np.zeros((0, 2)), [], "line_zonotope").is_bounded().no
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_polytopes_are_the_numbers_that_were_given(seed):
+    """Vertices, hulls and copies of half-spaces of any numbers, against pairs of rows solved."""
+    rng = np.random.default_rng(seed)
+    angles = np.sort(rng.uniform(0, 2 * np.pi, 3)) + [0, 2 * np.pi, 4 * np.pi]
+    rows = np.stack([np.cos(angles), np.sin(angles)], 1) * rng.uniform(1, 9, (3, 1))
+    H = np.vstack([rows, [[3, 0], [-3, 0], [0, 7], [0, -0.3]]])
+    h = rng.uniform(0.5, 2, len(H))
+    X = co.polytope(H, h)
+    assert X.claim == "exact" and X.has_exact_form
+    corners = []
+    for i in range(len(H)):
+        for j in range(i):
+            if abs(np.linalg.det(H[[i, j]])) > 1e-9:
+                x = np.linalg.solve(H[[i, j]], h[[i, j]])
+                if (H @ x <= h + 1e-9).all():
+                    corners.append(x)
+    found = X.vertices()
+    for x in corners:
+        assert np.abs(found - x).max(axis=1).min() < 1e-9
+    for x in found:
+        assert np.abs(np.array(corners) - x).max(axis=1).min() < 1e-9
+    again = pickle.loads(pickle.dumps(X))
+    assert again.claim == "exact"
+    assert again.vertices().tobytes() == found.tobytes()
+
+
+def test_vertices_of_many_half_spaces():
+    angles = 2 * np.pi * np.arange(100) / 100
+    X = co.polytope(np.stack([np.cos(angles), np.sin(angles)], 1), np.ones(100))
+    assert len(X.vertices()) == 100 and X.vertices().max() < 1.001
+    assert len(co.polytope([[1, 0], [-1, 0]], [-1, 0]).vertices()) == 0
+    with pytest.raises(co.Error, match="unbounded"):
+        co.polytope([[3, 0.1], [-1, 3]], [1, 1]).vertices()
+
+
+def test_vertices_of_what_numbers_do_not_hold():
+    X = np.array([[0.9, 0.1], [0.2, 0.7]]) @ co.polytope([[3, 0.1], [-1, 3], [-0.7, -2]], [1, 1, 1])
+    for Y in (X, Z.as_("ellipsoid").reduce(1)):
+        advice = r'X.as_\("constrained_zonotope"\).vertices\(\)'
+        with pytest.raises(co.Error, match=advice) as found:
+            Y.vertices()
+        assert found.value.code == "unsupported"
+        around = Y.as_("constrained_zonotope").vertices()
+        for d in np.eye(2):
+            assert (around @ d).max() >= Y.support(d).value * (1 - 1e-9)
+    assert X.claim == "exact"
+
+
+def test_long_work_hears_of_signals():
+    code = """
+import signal, threading, os, time, numpy as np, cordon as co
+rng = np.random.default_rng(1)
+H = rng.normal(size=(400, 5))
+H /= np.linalg.norm(H, axis=1)[:, None]
+signal.signal(signal.SIGINT, signal.default_int_handler)
+at = []
+threading.Timer(0.5, lambda: (at.append(time.time()), os.kill(os.getpid(), signal.SIGINT))).start()
+try:
+    co.polytope(H, np.ones(400), "constrained_zonotope")
+    print("done")
+except KeyboardInterrupt:
+    print("ended", time.time() - at[0] < 2)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300)
+    assert done.stdout == "ended True\n", done.stdout + done.stderr
 
 
 def test_constructors_of_representations():

@@ -167,7 +167,7 @@ def test_frames(study):
 def test_names_that_are_wrong(study):
     results = study.run(sets="none")
     with pytest.raises(KeyError, match="Zonotope"):
-        results["zonotope"]
+        results["Zonotop"]
     with pytest.raises(KeyError, match="radius"):
         results["Zonotope"].column("radus")
     with pytest.raises(KeyError):
@@ -186,6 +186,24 @@ def test_diagnosis_equals_that_of_a_run(examples):
             assert (mine.k, mine.decision, mine.mode) == (step["k"], step["decision"], step["mode"])
             assert [mode["candidate"] for mode in mine.evidence.values()] == [
                 mode["candidate"] for mode in step["modes"]]
+
+
+def test_all_diagnoses_at_once(examples):
+    study = co.Study(examples / "two_tank_leak.json")
+    data = study.run(sets="none").data
+    u, y = (np.column_stack([data[c] for c in data if c.startswith(letter)])
+            for letter in ("u_", "y_"))
+    one_by_one = list(co.Diagnoser.of(study, "intervals").run(u, y))
+    diagnoser = co.Diagnoser.of(study, "intervals")
+    at_once = diagnoser.diagnoses(u, y)
+    assert diagnoser.k == len(u) == len(at_once)
+    for mine, theirs in zip(at_once, one_by_one):
+        assert (mine.k, mine.decision, mine.mode) == (theirs.k, theirs.decision, theirs.mode)
+        assert mine.candidates == theirs.candidates
+    diagnoser.start(k=5)
+    assert diagnoser.diagnoses(u[:2], y[:2])[1].k == 6
+    with pytest.raises(co.ArgumentError, match="nan_is_missing"):
+        diagnoser.diagnoses(u, np.full_like(y, np.nan))
 
 
 def test_designs(examples):
@@ -210,7 +228,44 @@ def test_plots(examples, study):
     design = co.designs_of(co.Study(examples / "active_diagnosis_two_tanks.json"), "designed")[0]
     assert len(co.plot.tubes(design).collections) == 4
     turbine = co.Study(examples / "wind_turbine_sensor_faults.json").run(sets="none")
-    assert co.plot.residuals(next(iter(turbine.values()))).lines
+    assert co.plot.residuals(next(iter(turbine.values())))[0].lines
+
+
+def test_axes_are_an_array_however_many_there_are(study):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    results = study.run(sets="none")
+    assert co.plot.bounds(results).shape == (2,)
+    assert co.plot.bounds(results, states=[1]).shape == (1,)
+    model = co.Model(A=[[1]], C=[[1]], X0=co.interval([-1], [1]), W=co.interval([-1], [1]),
+                     V=co.interval([-1], [1]))
+    estimates = co.Observer("prediction_correction", model).estimates(None, [[0], [0]])
+    assert co.plot.bounds(estimates).shape == (1,)
+    figure, ax = pyplot.subplots()
+    assert co.plot.bounds(estimates, ax=ax)[0] is ax
+    _, axes = pyplot.subplots(2, 1)
+    assert co.plot.bounds(results, ax=axes).tolist() == axes.tolist()
+    with pytest.raises(co.ArgumentError, match="ax: 2 axes are needed.*not 1"):
+        co.plot.bounds(results, ax=ax)
+
+
+def test_infinite_numbers_are_numbers(study):
+    class Endless(co.extend.Metric):
+        """Is infinite."""
+
+        name = "python_endless"
+
+        def step(self, estimate, lower, upper, truth):
+            return {"python_endless": np.inf}
+
+        def summary(self):
+            return {"python_endless_most": np.inf, "python_endless_least": -np.inf}
+
+    co.extend.register(Endless)
+    study["metrics"] = ["python_endless"]
+    found = study.run(sets="none", pipeline="Interval")["Interval"]
+    assert found.summary["python_endless_most"] == np.inf
+    assert found.summary["python_endless_least"] == -np.inf
+    assert np.isinf(found.column("python_endless")).all()
 
 
 def test_empty_estimates_are_gaps(examples):
@@ -219,7 +274,7 @@ def test_empty_estimates_are_gaps(examples):
                      V=co.interval([-1], [1]))
     estimates = co.Observer("prediction_correction", model).estimates(None, [[0], [0], [9], [9]])
     assert [e.consistent.no for e in estimates] == [False, False, True, True]
-    line = co.plot.bounds(estimates).lines[0]
+    line = co.plot.bounds(estimates)[0].lines[0]
     assert np.isnan(line.get_ydata()).tolist() == [False, False, True, True]
 
 
