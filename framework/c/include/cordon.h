@@ -81,7 +81,11 @@ enum cordon_change {
   CORDON_GONE = 5          /* it stands no longer */
 };
 
+#ifdef CORDON_PLAIN_HANDLES /* for readers of headers that want every type defined */
+typedef void cordon_session;
+#else
 typedef struct cordon_session cordon_session;
+#endif
 
 /* ---- the library ---- */
 
@@ -105,7 +109,7 @@ const char* cordon_problem_suggestion(int i);
 
 /* ---- sessions ---- */
 
-/* A session with a pipeline of a study. `pipeline` may be NULL where the study has one only.
+/* A session with a pipeline of a study. `pipeline` may be NULL or "" where the study has one only.
  * `plugins`: directories that are searched first, with ":" between them, or NULL; then those of
  * CORDON_PLUGIN_PATH and those that Cordon was installed with. Plugins are programs: directories
  * that a study names are refused unless they are among these. Returns NULL where it is refused. */
