@@ -5,8 +5,8 @@
  *
  * Numbers. Functions that do something return a code, CORDON_OK or why not. Functions that tell a
  * number return CORDON_NONE where there is none, and CORDON_REFUSED where they were asked wrongly;
- * functions that tell a text return "" then. Indices count from 0. No call ends the program: NULL
- * and indices out of range are refused, and no exception leaves the library.
+ * functions that tell a text return "" then. Indices count from 0. NULL, indices out of range and
+ * wrong sizes are refused, and no exception leaves the library.
  *
  * Lifetimes. A text belongs to the session, and lives until the next call that changes it: step,
  * take, acknowledge, reset, restore, close. Names and warnings live as long as the session.
