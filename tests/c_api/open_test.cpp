@@ -134,6 +134,7 @@ TEST_CASE("NULL in place of a session is refused everywhere") {
                                   cordon_result_bounds_k(no, 0),
                                   cordon_result_consistent(no, 0),
                                   cordon_result_decision(no, 0),
+                                  cordon_result_restarted(no, 0),
                                   cordon_result_mode(no, 0),
                                   cordon_event_count(no, 0),
                                   cordon_event_mode(no, 0, 0),

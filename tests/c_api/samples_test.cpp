@@ -69,7 +69,12 @@ TEST_CASE("a bank tells decisions, candidates and events") {
     REQUIRE(cordon_result_candidates(session, 0, candidates, 2) == CORDON_OK);
     for (Index j = 0; j < 2; ++j) CHECK((candidates[j] == 1) == diagnosis.modes[at(j)].candidate);
     CHECK(cordon_result_consistent(session, 0) == CORDON_NONE);
-    CHECK(cordon_result_json(session, 0) == json_of(step, reference.modes()));
+    std::string line = json_of(step, reference.modes());
+    if (cordon_event_count(session, 0) > 0) {
+      line.pop_back();
+      line += ", \"events\": " + events_json_of(step.diagnosis->events, reference.modes()) + "}";
+    }
+    CHECK(cordon_result_json(session, 0) == line);
     if (diagnosis.estimate) {
       CHECK(cordon_result_bounds_k(session, 0) == k);
       expect_bounds(session, 0, (*diagnosis.estimate)->interval_hull());
@@ -191,7 +196,29 @@ TEST_CASE("an observer that lags tells the time of its bounds") {
       expect_bounds(session, 0, Box::space(2));
       CHECK(std::string(cordon_result_json(session, 0)) == R"({"k": null, "sample": 1})");
     }
+    if (k == 4) CHECK(std::string(cordon_result_json(session, 0)).ends_with(", \"sample\": 4}"));
   }
+  cordon_close(session);
+}
+
+TEST_CASE("an observer that begins anew says so") {
+  std::string text = study_text();
+  const std::string name = "{\"name\": \"zonotope\",";
+  text.insert(text.find(name) + name.size(),
+              R"("on_empty": "restart",
+                 "restart_set": {"type": "box", "lower": [-9, -9], "upper": [9, 9]},)");
+  cordon_session* const session = cordon_open_text(text.c_str(), nullptr, "zonotope", nullptr);
+  CAPTURE(last_error());
+  REQUIRE(session != nullptr);
+  const double u = 0, y[] = {0, 0}, wrong[] = {0, 50};
+  REQUIRE(cordon_step(session, &u, 1, y, 2) == CORDON_OK);
+  REQUIRE(cordon_step(session, &u, 1, wrong, 2) == CORDON_OK);
+  CHECK(cordon_result_consistent(session, 0) == CORDON_NO);
+  CHECK(cordon_result_restarted(session, 0) == 0);
+  REQUIRE(cordon_step(session, &u, 1, y, 2) == CORDON_OK);
+  CHECK(cordon_result_restarted(session, 0) == 1);
+  CHECK(std::string(cordon_result_json(session, 0)).ends_with(", \"restarted\": true}"));
+  CHECK(cordon_result_consistent(session, 0) != CORDON_NO);
   cordon_close(session);
 }
 

@@ -178,14 +178,17 @@ int cordon_result_bounds(cordon_session* session, int result, double* lower, dou
 /* Of an observer, a cordon_answer: CORDON_NO is the proof that no state explains the samples. */
 int cordon_result_consistent(const cordon_session* session, int result);
 
+/* 1: the observer has begun anew with this sample, as the pipeline wants it after an empty estimate
+ * or where formulas had no bounded enclosure; else 0. */
+int cordon_result_restarted(const cordon_session* session, int result);
+
 /* Of a diagnoser: a cordon_decision; the mode that is monitored; and for each mode 1, or 0 for
  * those that are excluded. */
 int cordon_result_decision(const cordon_session* session, int result);
 int cordon_result_mode(const cordon_session* session, int result);
 int cordon_result_candidates(const cordon_session* session, int result, int* candidates, int n);
 
-/* The whole step as JSON, as `steps` of results.json have it; of an observer that still waits
- * {"k": null, "sample": 3}. */
+/* The whole step as JSON: the line of `cordon stream` without its alarms (docs/online.md). */
 const char* cordon_result_json(cordon_session* session, int result);
 
 /* What the step has changed in a diagnoser's decisions: what ("detected", "isolated", …), of which

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What came out of the last samples.
 #include "session.hpp"
+#include "study/text/json_writer.hpp"
 
 using namespace cordon;
 
@@ -43,10 +44,19 @@ const DiagnosisEvent& event_of(const cordon_session* session, int result, int ev
   return c::entry(events_of(c::result_of(session, result).step), event, "event");
 }
 
+/// A line of `cordon stream`, without alarms.
 std::string json_text(const cordon_session& session, const SessionStep& step) {
-  if (step.estimate && !step.estimate->is_last)
-    return R"({"k": null, "sample": )" + std::to_string(step.k) + "}";
-  return json_of(step, session.online.session().modes());
+  const std::vector<std::string>& modes = session.online.session().modes();
+  const std::string sample = R"(, "sample": )" + std::to_string(step.k);
+  const bool waits = step.estimate && !step.estimate->is_last;
+  std::string text = waits ? R"({"k": null)" : json_of(step, modes);
+  if (!waits) text.pop_back();
+  if (step.estimate && (waits || step.estimate->estimate.k != step.k)) text += sample;
+  if (!events_of(step).empty()) text += R"(, "events": )" + events_json_of(events_of(step), modes);
+  if (step.estimate && step.estimate->restarted) text += R"(, "restarted": true)";
+  if (step.estimate && !step.estimate->not_enclosed.empty())
+    text += R"(, "not_enclosed": )" + detail::json_string(step.estimate->not_enclosed);
+  return text + "}";
 }
 
 /// A text that is made when it is asked for first.
@@ -92,6 +102,13 @@ int cordon_result_bounds(cordon_session* session, int result, double* lower, dou
 int cordon_result_consistent(const cordon_session* session, int result) {
   return number(__func__, session, result, [](const SessionStep& step) {
     return step.estimate ? static_cast<int>(step.estimate->estimate.consistent) : c::none;
+  });
+}
+
+int cordon_result_restarted(const cordon_session* session, int result) {
+  return number(__func__, session, result, [](const SessionStep& step) {
+    return step.estimate && (step.estimate->restarted || !step.estimate->not_enclosed.empty()) ? 1
+                                                                                               : 0;
   });
 }
 
