@@ -13,8 +13,8 @@ namespace {
 constexpr const char* head = "cordon checkpoint 1\n";
 
 void serialize(CheckpointState& state, Archive& archive) {
-  archive(state.session, state.alarms, state.log_bytes);
-  if (state.log_bytes < 0) archive.refuse("a log of negative length");
+  archive(state.session, state.alarms, state.lines, state.log_bytes);
+  if (state.lines < 0 || state.log_bytes < 0) archive.refuse("a negative length");
 }
 
 }  // namespace
@@ -46,10 +46,11 @@ std::optional<CheckpointState> Checkpoint::read() const {
   return state;
 }
 
-void Checkpoint::write(const std::string& session, Alarms& alarms, std::int64_t log_bytes) const {
+void Checkpoint::write(const std::string& session, Alarms& alarms, std::int64_t lines,
+                       std::int64_t log_bytes) const {
   Archive of_alarms(nullptr);
   alarms.serialize(of_alarms);
-  CheckpointState state{session, of_alarms.bytes(), log_bytes};
+  CheckpointState state{session, of_alarms.bytes(), lines, log_bytes};
   Archive archive(nullptr);
   serialize(state, archive);
   const std::filesystem::path beside = file_.string() + ".new";

@@ -14,6 +14,7 @@ namespace cordon::apps {
 struct CheckpointState {
   std::string session;         ///< of OnlineSession::save
   std::string alarms;          ///< of Alarms::serialize
+  std::int64_t lines = 0;       ///< that had been read
   std::int64_t log_bytes = 0;  ///< of the log, which may have grown since
 
   void restore(Alarms& into) const;
@@ -27,7 +28,8 @@ class Checkpoint {
   std::optional<CheckpointState> read() const;
   /// In place of the one before, which stays if this one cannot be written: Errc::io. It is on the
   /// disk afterwards.
-  void write(const std::string& session, Alarms& alarms, std::int64_t log_bytes) const;
+  void write(const std::string& session, Alarms& alarms, std::int64_t lines,
+             std::int64_t log_bytes) const;
 
  private:
   std::filesystem::path file_;

@@ -50,6 +50,7 @@ bool StreamLoop::restore() {
   if (state) {
     session_.restore(state->session);
     state->restore(alarms_);
+    line_ = state->lines;
   }
   if (!arguments_.log.empty())
     log_.emplace(arguments_.log, session_.session().name(), state ? state->log_bytes : 0);
@@ -58,7 +59,8 @@ bool StreamLoop::restore() {
     return true;
   }
   const Index next = session_.session().last().value_or(-1) + 1;
-  return output_.write(fmt::format("{{\"restored\": true, \"next\": {}}}\n", next));
+  return output_.write(
+      fmt::format("{{\"restored\": true, \"next\": {}, \"lines\": {}}}\n", next, line_));
 }
 
 void StreamLoop::run() {
@@ -106,7 +108,7 @@ void StreamLoop::save() {
   since_checkpoint_ = 0;
   written("the checkpoint was not written", [&] {
     if (log_) log_->flush();
-    checkpoint_.write(session_.save(), alarms_, log_ ? log_->bytes() : 0);
+    checkpoint_.write(session_.save(), alarms_, line_, log_ ? log_->bytes() : 0);
   });
 }
 
@@ -198,9 +200,10 @@ std::string StreamLoop::summary() const {
   add(static_cast<std::int64_t>(alarms_.standing().size()), "alarms stand");
   if (replayed_) text += fmt::format(", {} alarm changes as in the log", replayed_->agreed());
   if (samples == 0) return text;
-  return text + fmt::format("\nline to line: median {:.1f} µs, 99 % {:.1f} µs, largest {:.1f} µs",
+  return text + fmt::format("\nline to line: median {:.1f} µs, 99 % {:.1f} µs, 99.9 % {:.1f} µs, largest "
+                            "{:.1f} µs",
                             latency_us_.median(), latency_us_.quantile(0.99),
-                            latency_us_.largest());
+                            latency_us_.quantile(0.999), latency_us_.largest());
 }
 
 }  // namespace cordon::apps

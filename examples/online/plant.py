@@ -6,7 +6,7 @@
 
 Gauges drop out at random, and now and then the line is down for some samples, during which the
 pumps go on as they are; what a gauge has measured may come late. With the same seed the plant sends
-the same, from any time on.
+the same, whatever part of it was taken already.
 """
 import argparse
 import json
@@ -66,16 +66,18 @@ def main():
     options.add_argument("--leak", type=int, default=500, help="the leak begins at this k [500]")
     options.add_argument("--dropouts", type=float, default=0.3, help="share of outputs [0.3]")
     options.add_argument("--seed", type=int, default=1)
-    options.add_argument("--from", dest="first", type=int, default=0, help="begin at this k [0]")
+    options.add_argument("--skip", type=int, default=0, help="lines that were taken already [0]")
     options.add_argument("--every", type=float, default=0, help="seconds between samples [0]")
     given = options.parse_args()
     try:
-        for k, sent in lines(given.steps, given.leak, given.dropouts, given.seed):
-            if k < given.first:
-                continue
+        count = 0
+        for _, sent in lines(given.steps, given.leak, given.dropouts, given.seed):
             for line in sent:
-                print(line, flush=True)
-            time.sleep(given.every)
+                count += 1
+                if count > given.skip:
+                    print(line, flush=True)
+            if count > given.skip:
+                time.sleep(given.every)
     except BrokenPipeError:
         sys.stderr.close()
 

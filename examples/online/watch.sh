@@ -9,8 +9,8 @@ watch() {
   "$cordon" stream "$here/three_tanks.json" --pipeline supervision --checkpoint watch.state \
     --log watch.log "$@"
 }
-next=0
+taken=0
 if [ -e watch.state ]; then
-  next=$(watch --quiet </dev/null | sed -n 's/.*"next": \([0-9]*\).*/\1/p')
+  taken=$(watch --quiet </dev/null | sed -n 's/.*"lines": \([0-9]*\).*/\1/p')
 fi
-python3 "$here/plant.py" --from "$next" "$@" | watch
+python3 "$here/plant.py" --skip "$taken" "$@" | watch

@@ -77,7 +77,6 @@ class OnlineSession::Intake {
   void start() {
     session_.start();
     passed_.clear();
-    counts_ = {};
     if (corrects()) before_ = session_.save();
   }
 

@@ -37,7 +37,7 @@ struct Taken {
 };
 std::string_view to_string(Taken::How how) noexcept;
 
-/// How many samples became what.
+/// How many samples became what, beginnings anew included.
 struct TakenCounts {
   std::int64_t taken = 0, filled = 0, corrected = 0, late = 0, repeated = 0;
   std::int64_t filled_steps = 0;  ///< times that were filled
