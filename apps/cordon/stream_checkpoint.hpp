@@ -14,7 +14,7 @@ namespace cordon::apps {
 struct CheckpointState {
   std::string session;         ///< of OnlineSession::save
   std::string alarms;          ///< of Alarms::serialize
-  std::int64_t lines = 0;       ///< that had been read
+  std::int64_t lines = 0;      ///< that had been read
   std::int64_t log_bytes = 0;  ///< of the log, which may have grown since
 
   void restore(Alarms& into) const;

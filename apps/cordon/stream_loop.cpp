@@ -200,10 +200,11 @@ std::string StreamLoop::summary() const {
   add(static_cast<std::int64_t>(alarms_.standing().size()), "alarms stand");
   if (replayed_) text += fmt::format(", {} alarm changes as in the log", replayed_->agreed());
   if (samples == 0) return text;
-  return text + fmt::format("\nline to line: median {:.1f} µs, 99 % {:.1f} µs, 99.9 % {:.1f} µs, largest "
-                            "{:.1f} µs",
-                            latency_us_.median(), latency_us_.quantile(0.99),
-                            latency_us_.quantile(0.999), latency_us_.largest());
+  return text + fmt::format(
+                    "\nline to line: median {:.1f} µs, 99 % {:.1f} µs, 99.9 % {:.1f} µs, largest "
+                    "{:.1f} µs",
+                    latency_us_.median(), latency_us_.quantile(0.99), latency_us_.quantile(0.999),
+                    latency_us_.largest());
 }
 
 }  // namespace cordon::apps
