@@ -68,6 +68,10 @@ void compare(const std::string& study, const Json& pipeline, const std::string& 
 }  // namespace
 
 TEST_CASE("streams give the steps of runs") {
+  if (!std::filesystem::exists(CORDON_EXAMPLE_RUNS)) {  // a build without the room of the examples
+    MESSAGE("the examples have not been run: left out");
+    return;
+  }
   int compared = 0;
   for (const auto& entry : std::filesystem::directory_iterator(CORDON_EXAMPLES)) {
     if (entry.path().extension() != ".json") continue;

@@ -104,8 +104,7 @@ TEST_CASE("SIGTERM ends a stream after the sample at hand") {
   const std::string out = (scratch / "out").string();
   const std::string in = (scratch / "in").string();
   const std::string feed = "{ echo '{\"u\": [0], \"y\": [0, 0]}'; exec sleep 30; } > " + in;
-  const std::string wait =
-      "for i in 1 2 3 4 5 6 7 8 9 10; do sleep 0.2; [ -s " + out + " ] && break; done";
+  const std::string wait = "for i in $(seq 100); do sleep 0.2; [ -s " + out + " ] && break; done";
   const test::Outcome outcome =
       cordon_with("stream " + study.string() + " --pipeline zonotope < " + in + " > " + out +
                       " & stream=$!; " + feed + " & feeder=$!; " + wait +
@@ -183,12 +182,11 @@ TEST_CASE("a stream that is killed goes on from its checkpoint, with no alarm lo
     // Killed while it waits for more.
     const std::string begun = scratch.write("begun", all.substr(0, end)).string();
     const std::string in = (scratch / "in").string(), out = (scratch / "out").string();
-    cordon_with(options + in + " > " + out + " & stream=$!; { cat " + begun +
-                    "; exec sleep 30; } > " + in +
-                    " & feeder=$!; for i in 1 2 3 4 5 6 7 8 9; do sleep 0.1; [ $(wc -l < " + out +
-                    ") -ge " + std::to_string(until) +
-                    " ] && break; done; kill -KILL $stream; kill $feeder; wait",
-                "true; rm -f " + in + "; mkfifo " + in + ";");
+    cordon_with(
+        options + in + " > " + out + " & stream=$!; { cat " + begun + "; exec sleep 30; } > " + in +
+            " & feeder=$!; for i in $(seq 200); do sleep 0.1; [ $(wc -l < " + out + ") -ge " +
+            std::to_string(until) + " ] && break; done; kill -KILL $stream; kill $feeder; wait",
+        "true; rm -f " + in + "; mkfifo " + in + ";");
     const std::string before = bytes_of(out);
     // The plant sends again what has come since the checkpoint.
     CHECK(cordon_with(stream + "--checkpoint " + checkpoint + " < /dev/null").code == 2);
