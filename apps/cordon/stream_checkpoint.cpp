@@ -3,54 +3,38 @@
 
 #include "cordon/interfaces/archive.hpp"
 #include "study/text/atomic_directory.hpp"
-#include "study/text/fingerprint.hpp"
 #include "study/text/json_text.hpp"
+#include "study/text/sealed.hpp"
 
 namespace cordon::apps {
 
 namespace {
 
-constexpr const char* head = "cordon checkpoint 1\n";
+constexpr const char* name_of_file = "cordon checkpoint 1";
 
 void serialize(CheckpointState& state, Archive& archive) {
-  archive(state.session, state.alarms, state.lines, state.log_bytes);
+  archive(state.session, state.lines, state.log_bytes);
   if (state.lines < 0 || state.log_bytes < 0) archive.refuse("a negative length");
 }
 
 }  // namespace
 
-void CheckpointState::restore(Alarms& into) const {
-  Archive archive(nullptr, alarms);
-  into.serialize(archive);
-  archive.expect_end();
-}
-
 std::optional<CheckpointState> Checkpoint::read() const {
   if (!detail::is_there(file_)) return std::nullopt;
   const std::string text = json::read_file(file_.string());
-  const auto refuse = [&](const std::string& why) {
-    throw InputError(file_.string(),
-                     {{"", why, "name another file, or remove this one to begin anew"}});
-  };
-  const std::string start = head;
-  const std::size_t end = text.find('\n', start.size());
-  if (!text.starts_with(start) || end == std::string::npos)
-    refuse("is no checkpoint of this version");
-  std::string bytes = text.substr(end + 1);
-  if (detail::fingerprint(bytes) != text.substr(start.size(), end - start.size()))
-    refuse("is damaged: its check sum does not fit");
-  CheckpointState state;
-  Archive archive(nullptr, std::move(bytes));
-  serialize(state, archive);
-  archive.expect_end();
-  return state;
+  try {
+    CheckpointState state;
+    Archive archive(nullptr, detail::unsealed(name_of_file, text));
+    serialize(state, archive);
+    archive.expect_end();
+    return state;
+  } catch (const Error& error) {
+    throw InputError(file_.string(), {{"", error.what(),
+                                       "name another file, or remove this one to begin anew"}});
+  }
 }
 
-void Checkpoint::write(const std::string& session, Alarms& alarms, std::int64_t lines,
-                       std::int64_t log_bytes) const {
-  Archive of_alarms(nullptr);
-  alarms.serialize(of_alarms);
-  CheckpointState state{session, of_alarms.bytes(), lines, log_bytes};
+void Checkpoint::write(CheckpointState state) const {
   Archive archive(nullptr);
   serialize(state, archive);
   const std::filesystem::path beside = file_.string() + ".new";
@@ -58,8 +42,7 @@ void Checkpoint::write(const std::string& session, Alarms& alarms, std::int64_t 
   std::filesystem::remove(beside, ignored);
   try {
     detail::OutputFile out(beside);
-    out.write(head + detail::fingerprint(archive.bytes()) + "\n");
-    out.write(archive.bytes());
+    out.write(detail::sealed(name_of_file, archive.bytes()));
     out.close();
   } catch (const Error&) {
     std::filesystem::remove(beside, ignored);
@@ -68,6 +51,7 @@ void Checkpoint::write(const std::string& session, Alarms& alarms, std::int64_t 
   std::error_code failure;
   std::filesystem::rename(beside, file_, failure);
   if (failure) throw Error(Errc::io, file_.string() + ": " + failure.message());
+  detail::sync_names(std::filesystem::absolute(file_).parent_path());
 }
 
 }  // namespace cordon::apps

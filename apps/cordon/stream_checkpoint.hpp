@@ -7,17 +7,12 @@
 #include <optional>
 #include <string>
 
-#include "cordon/study/alarms.hpp"
-
 namespace cordon::apps {
 
 struct CheckpointState {
-  std::string session;         ///< of OnlineSession::save
-  std::string alarms;          ///< of Alarms::serialize
+  std::string session = {};    ///< of OnlineSession::save
   std::int64_t lines = 0;      ///< that had been read
   std::int64_t log_bytes = 0;  ///< of the log, which may have grown since
-
-  void restore(Alarms& into) const;
 };
 
 class Checkpoint {
@@ -28,8 +23,7 @@ class Checkpoint {
   std::optional<CheckpointState> read() const;
   /// In place of the one before, which stays if this one cannot be written: Errc::io. It is on the
   /// disk afterwards.
-  void write(const std::string& session, Alarms& alarms, std::int64_t lines,
-             std::int64_t log_bytes) const;
+  void write(CheckpointState state) const;
 
  private:
   std::filesystem::path file_;

@@ -37,8 +37,7 @@ std::string_view name_of(Request request) {
 
 }  // namespace
 
-std::string line_of(const SessionStep& step, const std::vector<AlarmChange>& alarms,
-                    const Session& session, LineOptions options) {
+std::string line_of(const TakenStep& step, const Session& session, LineOptions options) {
   std::string text;
   const EstimateStep* const estimate = step.estimate ? &*step.estimate : nullptr;
   if (estimate && !estimate->is_last) {
@@ -56,7 +55,7 @@ std::string line_of(const SessionStep& step, const std::vector<AlarmChange>& ala
   if (estimate && !estimate->not_enclosed.empty())
     text += ", \"not_enclosed\": " + detail::json_string(estimate->not_enclosed);
   if (options.is_cut) text += ", \"deadline\": true";
-  if (!alarms.empty()) text += ", \"alarms\": " + list_of(alarms);
+  if (!step.alarms.empty()) text += ", \"alarms\": " + list_of(step.alarms);
   return text + "}\n";
 }
 

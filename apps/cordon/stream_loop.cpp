@@ -25,12 +25,11 @@ StreamLoop::StreamLoop(const Study& study, const Registry& registry,
                        const StreamArguments& arguments, const std::atomic<bool>* stop)
     : arguments_(arguments),
       session_(study, registry, arguments.pipeline),
-      alarms_(study, session_.session()),
       lines_(study),
       input_(STDIN_FILENO, stop),
       output_(STDOUT_FILENO, stop),
       checkpoint_(arguments.checkpoint) {
-  session_.session().prove_hulls(arguments.sets);
+  session_.prove_hulls(arguments.sets);
   if (!arguments.record.empty())
     record_.emplace(arguments.record, study, session_.session().name());
   if (!arguments.replay.empty()) replayed_.emplace(arguments.replay, session_.session().name());
@@ -49,7 +48,6 @@ bool StreamLoop::restore() {
   }
   if (state) {
     session_.restore(state->session);
-    state->restore(alarms_);
     line_ = state->lines;
   }
   if (!arguments_.log.empty())
@@ -108,7 +106,7 @@ void StreamLoop::save() {
   since_checkpoint_ = 0;
   written("the checkpoint was not written", [&] {
     if (log_) log_->flush();
-    checkpoint_.write(session_.save(), alarms_, line_, log_ ? log_->bytes() : 0);
+    checkpoint_.write({session_.save(), line_, log_ ? log_->bytes() : 0});
   });
 }
 
@@ -121,7 +119,7 @@ bool StreamLoop::answer(const std::string& line) {
     text = answer_to(given);
     if (given.sample) ++since_checkpoint_;
   } catch (const Error& error) {
-    if (session_.session().has_ended() || !is_of_the_line(error)) throw;
+    if (session_.has_ended() || !is_of_the_line(error)) throw;
     ++refused_;
     text = error_line(error, line_);
   }
@@ -134,7 +132,7 @@ std::string StreamLoop::answer_to(const GivenLine& given) {
   std::string text;
   std::vector<AlarmChange> changes;
   if (given.request == Request::acknowledge) {
-    changes = alarms_.acknowledge();
+    changes = session_.acknowledge();
     text = line_of(*given.request, changes);
   } else if (given.request) {
     if (record_)
@@ -166,12 +164,11 @@ std::string StreamLoop::answer_to(const Taken& taken, bool is_cut) {
   std::string text;
   if (taken.how != Taken::How::taken) text = line_of(taken, line_);
   keep_record([&] {
-    for (const Sample& sample : taken.samples) record_->take(sample);
+    for (const TakenStep& step : taken.steps) record_->take(step.sample);
   });
-  for (const SessionStep& step : taken.steps) {
-    const std::vector<AlarmChange> changes = alarms_.step(step);
-    keep(changes);
-    text += line_of(step, changes, session_.session(), {arguments_.sets, is_cut});
+  for (const TakenStep& step : taken.steps) {
+    keep(step.alarms);
+    text += line_of(step, session_.session(), {arguments_.sets, is_cut});
   }
   return text;
 }
@@ -197,7 +194,7 @@ std::string StreamLoop::summary() const {
   add(counts.repeated, "repeated");
   add(cut_, "with questions that the deadline has left open");
   add(unwritten_, "not written");
-  add(static_cast<std::int64_t>(alarms_.standing().size()), "alarms stand");
+  add(static_cast<std::int64_t>(session_.alarms().size()), "alarms stand");
   if (replayed_) text += fmt::format(", {} alarm changes as in the log", replayed_->agreed());
   if (samples == 0) return text;
   return text + fmt::format(

@@ -64,7 +64,6 @@ class StreamLoop {
 
   const StreamArguments& arguments_;
   OnlineSession session_;
-  Alarms alarms_;
   SampleLines lines_;
   LineInput input_;
   LineOutput output_;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tanks supervised from a program of one's own: supervise STUDY < lines of samples
-#include <cordon/study/alarms.hpp>
 #include <cordon/study/online.hpp>
 #include <iostream>
 #include <string>
@@ -14,18 +13,17 @@ int main(int argc, char** argv) {
     const Study study = read_study(argv[1], registry, default_search_path(), StudyPlugins::refuse,
                                    StudyData::optional);
     OnlineSession session(study, registry, "supervision");
-    Alarms alarms(study, session.session());
     SampleLines lines(study);  // samples may come from anywhere: a GivenSample is k, u and y
     for (std::string line; std::getline(std::cin, line);) {
       try {
         const GivenLine given = lines.read(line);
         if (!given.sample) continue;
-        for (const SessionStep& step : session.take(*given.sample).steps) {
-          for (const AlarmChange& change : alarms.step(step))
+        for (const TakenStep& step : session.take(*given.sample).steps) {
+          for (const AlarmChange& change : step.alarms)
             std::cout << to_string(change.what) << ": " << change.alarm.text << '\n';
         }
       } catch (const Error& error) {
-        if (session.session().has_ended()) throw;
+        if (session.has_ended()) throw;
         std::cerr << error.what() << '\n';  // of this line: the next one may be right
       }
     }

@@ -106,7 +106,7 @@ TEST_CASE("late outputs correct the past, to the bits of a run that had them in 
     LeakyPlant plant;
     for (Index k = 0; k < 12; ++k) plant.next();
     const GivenSample next = plant.next();
-    const SessionStep one = late.take(next).steps[0], two = in_time.take(next).steps[0];
+    const TakenStep one = late.take(next).steps[0], two = in_time.take(next).steps[0];
     CHECK(json_of(one, late.session().modes()) == json_of(two, in_time.session().modes()));
     if (one.estimate) CHECK(same(one.estimate->hull, two.estimate->hull));
   }
@@ -133,8 +133,38 @@ TEST_CASE("the input of a time that was filled comes late as well") {
   CHECK(session.take(given[2]).how == How::corrected);
   const Taken taken = session.take(given[3]);
   CHECK(taken.how == How::corrected);
-  Session& one = session.session();
-  Session& two = in_time.session();
-  const Vector u = Vector::Zero(1), y = given[5].y;
-  CHECK(same(one.step(u, y).estimate->hull, two.step(u, y).estimate->hull));
+  LeakyPlant plant;
+  for (Index k = 0; k < 6; ++k) plant.next();
+  const GivenSample next = plant.next();
+  CHECK(same(session.take(next).steps[0].estimate->hull, in_time.take(next).steps[0].estimate->hull));
+}
+
+TEST_CASE("a state goes to sessions with the same rules only, and damage leaves a new beginning") {
+  const std::string rules = R"({"late": "correct", "lag": 4})";
+  OnlineSession session = session_of(rules);
+  for (const GivenSample& sample : samples(6)) session.take(sample);
+  const std::string saved = session.save();
+  OnlineSession same_rules = session_of(rules), other_rules = session_of(R"({"late": "correct"})");
+  same_rules.restore(saved);
+  CHECK(same_rules.session().last() == 5);
+  CHECK_THROWS_AS(other_rules.restore(saved), Error);
+  for (const std::size_t at : {std::size_t{0}, std::size_t{30}, saved.size() / 2}) {
+    std::string damaged = saved;
+    damaged[at] = static_cast<char>(damaged[at] ^ 4);
+    CHECK_THROWS_AS(same_rules.restore(damaged), Error);
+    CHECK_FALSE(same_rules.session().last());
+    CHECK_FALSE(same_rules.has_ended());
+    same_rules.restore(saved);
+  }
+}
+
+TEST_CASE("times end where JSON has no numbers for them") {
+  OnlineSession session = session_of("");
+  GivenSample sample = samples(1)[0];
+  sample.k = (Index{1} << 53) - 1;
+  session.take(sample);
+  sample.k.reset();
+  CHECK_THROWS_WITH_AS(session.take(sample), doctest::Contains("2^53"), Error);
+  sample.k = -1;
+  CHECK_THROWS_AS(session.take(sample), Error);
 }

@@ -101,7 +101,7 @@ TEST_CASE("mutated lines are samples or refused, and a session goes on after the
     } catch (const Error&) {
       ++refused;
     }
-    if (session.session().has_ended()) session.start();
+    if (session.has_ended()) session.start();
   }
   CHECK(taken > 1000);
   CHECK(refused > 1000);

@@ -39,8 +39,10 @@ inline std::string study_text(const std::string& online = "") {
 
 /// Registry and study, with the plugins of this build.
 struct Loaded {
-  explicit Loaded(const std::string& online = "")
-      : study(read_study_text(study_text(online), "study.json", registry, default_search_path(),
+  explicit Loaded(const std::string& online = "") : Loaded(study_text(online), whole) {}
+  enum Whole { whole };
+  Loaded(const std::string& text, Whole)
+      : study(read_study_text(text, "study.json", registry, default_search_path(),
                               StudyPlugins::refuse, StudyData::optional)) {}
   Registry registry;
   Study study;

@@ -17,7 +17,7 @@ template <class Result, class Get>
 Result of_alarm(const char* function, const cordon_session* session, int i, Result otherwise,
                 Get&& get) {
   return c::got(function, otherwise, [&] {
-    return get(c::entry(c::session_of(session).alarms->standing(), i, "alarm"));
+    return get(c::entry(c::session_of(session).online.alarms(), i, "alarm"));
   });
 }
 
@@ -60,7 +60,7 @@ const char* cordon_change_json(cordon_session* session, int change) {
 
 int cordon_alarm_count(const cordon_session* session) {
   return c::got(__func__, c::refused,
-                [&] { return c::count_of(c::session_of(session).alarms->standing()); });
+                [&] { return c::count_of(c::session_of(session).online.alarms()); });
 }
 int cordon_alarm_cause(const cordon_session* session, int alarm) {
   return of_alarm(__func__, session, alarm, c::refused,
@@ -86,7 +86,7 @@ int cordon_acknowledge(cordon_session* session) {
   return c::done(__func__, [&] {
     cordon_session& s = c::session_of(session);
     s.changes.clear();
-    s.changes = c::changes_of(s.alarms->acknowledge());
+    s.changes = c::changes_of(s.online.acknowledge());
   });
 }
 

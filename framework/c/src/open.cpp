@@ -66,7 +66,6 @@ const auto of_warnings = [](const cordon_session& s) -> auto& { return s.warning
 cordon_session::cordon_session(const Study& study, const Registry& registry,
                                const std::string& pipeline)
     : online(study, registry, pipeline),
-      alarms(std::make_unique<Alarms>(study, online.session())),
       warnings(study.warnings) {
   const Model& model = online.session().model();
   names = {names_of(study.labels.states, "x", model.states()),

@@ -2,16 +2,11 @@
 // Samples in, and the state between them.
 #include <cstring>
 
-#include "cordon/interfaces/archive.hpp"
 #include "session.hpp"
-#include "study/text/fingerprint.hpp"
 
 using namespace cordon;
 
 namespace {
-
-constexpr const char* head_of_saved = "cordon c session 1\n";
-constexpr std::int64_t latest = std::int64_t{1} << 53;  // later times are no numbers in JSON
 
 /// An array of the caller.
 Vector given(const double* values, int n, int wanted, const char* what) {
@@ -31,54 +26,8 @@ int take(const char* function, cordon_session* session, std::optional<std::int64
     sample.k = k;
     sample.u = given(u, n_u, c::count_of(s.names.inputs), "u");
     sample.y = given(y, n_y, c::count_of(s.names.outputs), "y");
-    if (k.value_or(s.online.session().last().value_or(0)) >= latest)
-      throw Error(Errc::invalid, "times end at " + std::to_string(latest));
     s.take(sample);
   });
-}
-
-std::string saved(cordon_session& session) {
-  if (session.ended) throw Error(Errc::invalid, "the session has ended: there is no state");
-  std::string of_session = session.online.save();
-  Archive of_alarms(nullptr);
-  session.alarms->serialize(of_alarms);
-  std::string alarms = of_alarms.bytes();
-  Archive archive(nullptr);
-  archive(of_session, alarms);
-  return head_of_saved + detail::fingerprint(archive.bytes()) + "\n" + archive.bytes();
-}
-
-/// Throws Errc::invalid if the check sum does not fit.
-std::string checked(std::string_view saved) {
-  const std::string_view head = head_of_saved;
-  const std::size_t end = saved.find('\n', std::min(head.size(), saved.size()));
-  if (!saved.starts_with(head) || end == std::string_view::npos)
-    throw Error(Errc::invalid, "this is no saved session of this version");
-  const std::string_view bytes = saved.substr(end + 1);
-  if (detail::fingerprint(bytes) != saved.substr(head.size(), end - head.size()))
-    throw Error(Errc::invalid, "the saved session is damaged: its check sum does not fit");
-  return std::string(bytes);
-}
-
-void restore(cordon_session& session, std::string_view bytes) {
-  std::string of_session, of_alarms;
-  Archive archive(nullptr, checked(bytes));
-  archive(of_session, of_alarms);
-  archive.expect_end();
-  auto alarms = std::make_unique<Alarms>(*session.alarms);
-  Archive reader(nullptr, of_alarms);
-  alarms->serialize(reader);
-  reader.expect_end();
-  session.forget();
-  session.ended = true;  // unless it is restored or begins anew
-  try {
-    session.online.restore(of_session);
-  } catch (const Error&) {
-    session.ended = false;
-    throw;
-  }
-  session.alarms = std::move(alarms);
-  session.ended = false;
 }
 
 }  // namespace
@@ -91,25 +40,13 @@ void cordon_session::forget() {
 }
 
 void cordon_session::take(const GivenSample& sample) {
-  if (ended)
-    throw Error(Errc::plugin, "the session has ended; reset it, or restore what was saved");
-  Taken taken;
-  ended = true;  // a step whose alarms are lost is none
-  try {
-    taken = online.take(sample);
-  } catch (const Error& error) {
-    ended = false;  // if it is the sample's; the session knows
-    throw;
+  Taken taken = online.take(sample);
+  for (TakenStep& step : taken.steps) {
+    for (c::Change& change : c::changes_of(std::move(step.alarms))) changes.push_back(std::move(change));
+    results.push_back({std::move(step)});
   }
-  std::vector<AlarmChange> all;
-  for (const SessionStep& step : taken.steps) {
-    for (AlarmChange& change : alarms->step(step)) all.push_back(std::move(change));
-  }
-  changes = c::changes_of(std::move(all));
-  for (SessionStep& step : taken.steps) results.push_back({std::move(step)});
   said = std::move(taken.said);
   how = taken.how;
-  ended = false;
 }
 
 extern "C" {
@@ -145,15 +82,13 @@ int cordon_reset(cordon_session* session) {
   return c::done(__func__, [&] {
     cordon_session& s = c::session_of(session);
     s.forget();
-    s.ended = true;
     s.online.start();
-    s.ended = false;
   });
 }
 
 int cordon_save(cordon_session* session, void* buffer, size_t capacity, size_t* size) {
   return c::done(__func__, [&] {
-    const std::string bytes = saved(c::session_of(session));
+    const std::string bytes = c::session_of(session).online.save();
     c::required(size, "size") = bytes.size();
     if (!buffer) return;
     if (capacity < bytes.size())
@@ -166,7 +101,9 @@ int cordon_save(cordon_session* session, void* buffer, size_t capacity, size_t* 
 int cordon_restore(cordon_session* session, const void* buffer, size_t size) {
   return c::done(__func__, [&] {
     cordon_session& s = c::session_of(session);
-    restore(s, {&c::required(static_cast<const char*>(buffer), "buffer"), size});
+    const std::string saved(&c::required(static_cast<const char*>(buffer), "buffer"), size);
+    s.forget();
+    s.online.restore(saved);
   });
 }
 

@@ -41,10 +41,9 @@ struct cordon_session {
   void take(const cordon::GivenSample& sample);
   /// No results and no changes.
   void forget();
-  bool has_ended() const { return ended || online.session().has_ended(); }
+  bool has_ended() const { return online.has_ended(); }
 
   cordon::OnlineSession online;
-  std::unique_ptr<cordon::Alarms> alarms;
   cordon::c::Names names;
   std::vector<std::string> warnings;
 
@@ -52,7 +51,6 @@ struct cordon_session {
   std::string said;
   std::vector<cordon::c::Result> results;
   std::vector<cordon::c::Change> changes;
-  bool ended = false;  ///< between a step and its alarms
 };
 
 namespace cordon::c {

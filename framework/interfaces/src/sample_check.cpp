@@ -25,6 +25,14 @@ void check_missing(const Sample& sample) {
 
 }  // namespace
 
+Sample sample_of(Index k, VectorIn u, VectorIn y) {
+  Sample sample{k, u, y, {}};
+  for (Index i = 0; i < y.size(); ++i) {
+    if (std::isnan(y[i])) sample.missing.push_back(i);
+  }
+  return sample;
+}
+
 void check_sample(const Sample& sample, std::optional<Index> before, const Model& model) {
   if (sample.u.size() != model.inputs() || sample.y.size() != model.outputs()) {
     throw Error(Errc::dimension,

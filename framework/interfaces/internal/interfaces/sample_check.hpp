@@ -11,6 +11,9 @@ class Archive;
 
 namespace cordon::detail {
 
+/// The sample of these values; an output that is NaN is missing.
+Sample sample_of(Index k, VectorIn u, VectorIn y);
+
 /// Throws unless the sample fits the model, has finite numbers where none is missing, and follows
 /// the sample of the time `before`.
 void check_sample(const Sample& sample, std::optional<Index> before, const Model& model);

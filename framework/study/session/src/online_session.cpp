@@ -8,10 +8,13 @@
 #include "cordon/interfaces/archive.hpp"
 #include "cordon/study/online.hpp"
 #include "interfaces/sample_check.hpp"
+#include "study/text/sealed.hpp"
 
 namespace cordon {
 
 namespace {
+
+constexpr Index latest = (Index{1} << 53) - 1;  // later times are no numbers in JSON
 
 std::string time_of(Index k) { return "k = " + std::to_string(k); }
 
@@ -32,11 +35,18 @@ bool contradicts(const Sample& given, const Sample& known) {
   return false;
 }
 
-Sample without_outputs(Index k, const Vector& u, Index outputs) {
-  Sample sample{k, u, Vector::Constant(outputs, std::numeric_limits<double>::quiet_NaN()), {}};
-  for (Index i = 0; i < outputs; ++i) sample.missing.push_back(i);
-  return sample;
+/// To tell the states of sessions with other rules.
+std::string text_of(const OnlineSpec& rules) {
+  return std::to_string(static_cast<int>(rules.jumps)) + " " + std::to_string(rules.longest_gap) +
+         " " + std::to_string(static_cast<int>(rules.late)) + " " + std::to_string(rules.lag) +
+         " " + std::to_string(static_cast<int>(rules.repeated));
 }
+
+Vector no_outputs(Index count) {
+  return Vector::Constant(count, std::numeric_limits<double>::quiet_NaN());
+}
+
+constexpr const char* name_of_saved = "cordon online session 1";
 
 }  // namespace
 
@@ -60,40 +70,62 @@ std::string_view to_string(Taken::How how) noexcept {
 class OnlineSession::Intake {
  public:
   Intake(const Study& study, const Registry& registry, const std::string& pipeline)
-      : rules_(study.online), session_(study, registry, pipeline) {
+      : rules_(study.online),
+        session_(study, registry, pipeline),
+        alarms_(study, session_),
+        no_alarms_(alarms_) {
     if (corrects()) before_ = session_.save();
   }
 
   Taken take(const GivenSample& given) {
+    if (has_ended()) throw Error(Errc::plugin, "an earlier step has ended with an error; begin "
+                                               "anew, or go on from a state that was saved");
     const std::optional<Index> last = session_.last();
     const Index next = last ? *last + 1 : given.k.value_or(0);
-    const Sample sample = sample_of(given, given.k.value_or(next));
-    if (sample.k < 0) throw Error(Errc::invalid, time_of(sample.k) + ": times begin at 0");
+    const Sample sample = detail::sample_of(given.k.value_or(next), given.u, given.y);
+    if (sample.k < 0 || sample.k > latest)
+      throw Error(Errc::invalid, time_of(sample.k) + ": times are 0 to 2^53 - 1");
     detail::check_sample(sample, std::nullopt, session_.model());
-    if (sample.k == next) return on_time(sample);
-    return sample.k > next ? after_gap(sample, next) : again(sample);
+    if (sample.k > next) expect_fillable(sample.k, next);
+    if (sample.k < next) return again(sample);
+    return changing([&] { return sample.k == next ? on_time(sample) : after_gap(sample, next); });
   }
 
+  bool has_ended() const { return ended_ || session_.has_ended(); }
+
   void start() {
+    ended_ = true;
     session_.start();
     passed_.clear();
     if (corrects()) before_ = session_.save();
+    ended_ = false;
   }
 
-  void serialize(Archive& archive) {
-    std::string session = archive.is_reading() ? std::string() : session_.save();
-    archive.section("online session");
-    archive(session, before_, passed_, counts_.taken, counts_.filled, counts_.corrected,
-            counts_.late, counts_.repeated, counts_.filled_steps);
-    if (!archive.is_reading()) return;
-    for (const Passed& passed : passed_)
-      detail::check_sample(passed.sample, std::nullopt, session_.model());
-    session_.restore(session);
+  std::string save() {
+    if (has_ended()) throw Error(Errc::invalid, "a step has ended with an error: there is no state");
+    Archive archive(nullptr);
+    serialize(archive);
+    return detail::sealed(name_of_saved, archive.bytes());
+  }
+
+  void restore(const std::string& saved) {
+    try {
+      Archive archive(nullptr, detail::unsealed(name_of_saved, saved));
+      ended_ = true;
+      serialize(archive);
+      archive.expect_end();
+      ended_ = false;
+    } catch (const Error&) {
+      start();
+      alarms_ = no_alarms_;
+      throw;
+    }
   }
 
   OnlineSpec rules_;
   Session session_;
   TakenCounts counts_;
+  Alarms alarms_;
 
  private:
   struct Passed {
@@ -105,12 +137,30 @@ class OnlineSession::Intake {
 
   bool corrects() const { return rules_.late == LateRule::correct; }
 
-  Sample sample_of(const GivenSample& given, Index k) const {
-    Sample sample{k, given.u, given.y, {}};
-    for (Index i = 0; i < sample.y.size(); ++i) {
-      if (std::isnan(sample.y[i])) sample.missing.push_back(i);
+  /// Carries out what changes the session; if it ends half way, so does the session.
+  template <class Change>
+  Taken changing(Change&& change) {
+    ended_ = true;
+    Taken taken = change();
+    for (TakenStep& step : taken.steps) step.alarms = alarms_.step(step);
+    ended_ = false;
+    return taken;
+  }
+
+  void serialize(Archive& archive) {
+    archive.section(text_of(rules_));
+    std::string session = archive.is_reading() ? std::string() : session_.save();
+    archive(session, before_, passed_, counts_.taken, counts_.filled, counts_.corrected,
+            counts_.late, counts_.repeated, counts_.filled_steps);
+    alarms_.serialize(archive);
+    if (!archive.is_reading()) return;
+    session_.restore(session);
+    if (passed_.empty() == session_.last().has_value()) archive.refuse("no sample before");
+    for (std::size_t i = 0; i < passed_.size(); ++i) {
+      detail::check_sample(passed_[i].sample, std::nullopt, session_.model());
+      const Index k = session_.last().value_or(-1) - static_cast<Index>(passed_.size() - 1 - i);
+      if (passed_[i].sample.k != k) archive.refuse("samples that are not the last ones");
     }
-    return sample;
   }
 
   Taken on_time(const Sample& sample) {
@@ -121,31 +171,35 @@ class OnlineSession::Intake {
   }
 
   void step(const Sample& sample, Taken& taken, bool is_filled = false) {
-    taken.steps.push_back(session_.step(sample));
-    taken.samples.push_back(sample);
+    taken.steps.push_back({session_.step(sample), sample});
     passed_.push_back({sample, is_filled, std::exchange(before_, {})});
     const auto most = static_cast<std::size_t>(std::max<std::int64_t>(rules_.lag, 1));
     if (passed_.size() > most) passed_.pop_front();
     if (corrects()) before_ = session_.save();
   }
 
-  Taken after_gap(const Sample& sample, Index next) {
-    const Index gap = sample.k - next;
-    const std::string jump = time_of(sample.k) + " comes after " + time_of(next - 1) + ": ";
+  std::string jump(Index k, Index next) const {
+    return time_of(k) + " comes after " + time_of(next - 1) + ": ";
+  }
+
+  void expect_fillable(Index k, Index next) const {
     if (rules_.jumps == JumpRule::refuse)
       throw Error(Errc::invalid,
-                  jump +
-                      "it is refused; with \"jumps\": \"fill\" in /online the times between "
-                      "are taken without outputs");
-    if (gap > rules_.longest_gap)
-      throw Error(Errc::invalid, jump + "it is refused, as more than \"longest_gap\": " +
+                  jump(k, next) + "it is refused; with \"jumps\": \"fill\" in /online the times "
+                                  "between are taken without outputs");
+    if (k - next > rules_.longest_gap)
+      throw Error(Errc::invalid, jump(k, next) + "it is refused, as more than \"longest_gap\": " +
                                      std::to_string(rules_.longest_gap) + " times are missing");
+  }
+
+  Taken after_gap(const Sample& sample, Index next) {
+    const Index gap = sample.k - next;
     Taken taken{Taken::How::filled,
-                jump + std::to_string(gap) + (gap == 1 ? " time is" : " times are") +
+                jump(sample.k, next) + std::to_string(gap) + (gap == 1 ? " time is" : " times are") +
                     " taken without outputs, and with the input of the sample before"};
     const Vector u = passed_.back().sample.u;
     for (Index k = next; k < sample.k; ++k)
-      step(without_outputs(k, u, sample.y.size()), taken, true);
+      step(detail::sample_of(k, u, no_outputs(sample.y.size())), taken, true);
     step(sample, taken);
     ++counts_.filled;
     counts_.filled_steps += gap;
@@ -169,7 +223,7 @@ class OnlineSession::Intake {
       throw Error(Errc::invalid, time_of(sample.k) + " was taken with other values: it is refused");
     const std::vector<Index> news = news_in(sample, known);
     if (news.empty() && !other_input) return repeated(sample.k);
-    if (corrects()) return corrected(at, sample, news);
+    if (corrects()) return changing([&] { return corrected(at, sample, news); });
     ++counts_.late;
     return {Taken::How::late,
             time_of(sample.k) +
@@ -204,8 +258,7 @@ class OnlineSession::Intake {
     session_.restore(passed_[at].before);
     for (std::size_t i = at; i < passed_.size(); ++i) {
       if (i > at) passed_[i].before = session_.save();
-      taken.steps.push_back(session_.step(passed_[i].sample));
-      taken.samples.push_back(passed_[i].sample);
+      taken.steps.push_back({session_.step(passed_[i].sample), passed_[i].sample});
     }
     before_ = session_.save();
     ++counts_.corrected;
@@ -214,6 +267,8 @@ class OnlineSession::Intake {
 
   std::deque<Passed> passed_;  ///< the last samples
   std::string before_;         ///< the session as it is, where late outputs correct
+  Alarms no_alarms_;
+  bool ended_ = false;  ///< a change has ended half way
 };
 
 OnlineSession::OnlineSession(const Study& study, const Registry& registry,
@@ -223,27 +278,15 @@ OnlineSession::~OnlineSession() = default;
 OnlineSession::OnlineSession(OnlineSession&&) noexcept = default;
 OnlineSession& OnlineSession::operator=(OnlineSession&&) noexcept = default;
 
-Session& OnlineSession::session() { return intake_->session_; }
 const Session& OnlineSession::session() const { return intake_->session_; }
+void OnlineSession::prove_hulls(bool wanted) { intake_->session_.prove_hulls(wanted); }
 Taken OnlineSession::take(const GivenSample& sample) { return intake_->take(sample); }
+bool OnlineSession::has_ended() const { return intake_->has_ended(); }
 const TakenCounts& OnlineSession::counts() const { return intake_->counts_; }
+const std::vector<Alarm>& OnlineSession::alarms() const { return intake_->alarms_.standing(); }
+std::vector<AlarmChange> OnlineSession::acknowledge() { return intake_->alarms_.acknowledge(); }
 void OnlineSession::start() { intake_->start(); }
-
-std::string OnlineSession::save() {
-  Archive archive(nullptr);
-  intake_->serialize(archive);
-  return archive.bytes();
-}
-
-void OnlineSession::restore(const std::string& saved) {
-  try {
-    Archive archive(nullptr, saved);
-    intake_->serialize(archive);
-    archive.expect_end();
-  } catch (const Error&) {
-    intake_->start();
-    throw;
-  }
-}
+std::string OnlineSession::save() { return intake_->save(); }
+void OnlineSession::restore(const std::string& saved) { intake_->restore(saved); }
 
 }  // namespace cordon

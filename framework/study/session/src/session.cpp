@@ -13,7 +13,7 @@
 #include "cordon/registry/build.hpp"
 #include "interfaces/sample_check.hpp"
 #include "study/session/diagnosis_timeline.hpp"
-#include "study/text/fingerprint.hpp"
+#include "study/text/sealed.hpp"
 
 namespace cordon {
 
@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* head_of_saved = "cordon session 1\n";
+constexpr const char* name_of_saved = "cordon session 1";
 
 /// Where the pipeline of this name stands. Throws InputError if there is none.
 std::size_t index_of(const Study& study, const std::string& name) {
@@ -49,15 +49,6 @@ std::string fingerprint_of(const std::string& resolved, const std::string& pipel
     if (one.value("name", "") == pipeline) parts["pipeline"] = one;
   }
   return detail::fingerprint(parts.dump());
-}
-
-/// NaN in y tells what is missing.
-Sample sample_of(Index k, VectorIn u, VectorIn y) {
-  Sample sample{k, u, y, {}};
-  for (Index i = 0; i < y.size(); ++i) {
-    if (std::isnan(y[i])) sample.missing.push_back(i);
-  }
-  return sample;
 }
 
 Box hull_of(const std::optional<Enclosure>& estimate) {
@@ -126,20 +117,12 @@ class Session::Work {
     if (ended_) throw Error(Errc::invalid, "a step has ended with an error: there is no state");
     Archive archive(backend_);
     serialize(archive);
-    return std::string(head_of_saved) + detail::fingerprint(archive.bytes()) + "\n" +
-           archive.bytes();
+    return detail::sealed(name_of_saved, archive.bytes());
   }
 
   void restore(const std::string& saved) {
     start();
-    const std::string head = head_of_saved;
-    const std::size_t end = saved.find('\n', head.size());
-    if (!saved.starts_with(head) || end == std::string::npos)
-      throw Error(Errc::invalid, "this is no saved session of this version");
-    std::string bytes = saved.substr(end + 1);
-    if (detail::fingerprint(bytes) != saved.substr(head.size(), end - head.size()))
-      throw Error(Errc::invalid, "the saved session is damaged: its check sum does not fit");
-    Archive archive(backend_, std::move(bytes));
+    Archive archive(backend_, detail::unsealed(name_of_saved, saved));
     try {
       serialize(archive);
       archive.expect_end();
@@ -262,7 +245,7 @@ void Session::prove_hulls(bool wanted) { work_->proves_hulls_ = wanted; }
 void Session::start() { work_->start(); }
 SessionStep Session::step(const Sample& sample) { return work_->step(sample); }
 SessionStep Session::step(VectorIn u, VectorIn y) {
-  return work_->step(sample_of(work_->last_ ? *work_->last_ + 1 : 0, u, y));
+  return work_->step(detail::sample_of(work_->last_ ? *work_->last_ + 1 : 0, u, y));
 }
 std::string Session::save() { return work_->save(); }
 void Session::restore(const std::string& saved) { work_->restore(saved); }

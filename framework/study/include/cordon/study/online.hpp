@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cordon/study/alarms.hpp"
 #include "cordon/study/session.hpp"
 
 namespace cordon {
@@ -18,6 +19,12 @@ namespace cordon {
 struct GivenSample {
   std::optional<Index> k = {};  ///< nothing: the next one
   Vector u, y;                  ///< an output that is NaN is missing
+};
+
+/// A step, the sample that it is of, and the alarms that it has changed.
+struct TakenStep : SessionStep {
+  Sample sample = {};
+  std::vector<AlarmChange> alarms = {};
 };
 
 /// What became of a sample that was sent.
@@ -32,7 +39,8 @@ struct Taken {
   How how = How::taken;
   std::string said = {};  ///< the rule that was followed, for people; "" for the next one
   /// In the order of times: those that were filled or taken again first.
-  std::vector<SessionStep> steps = {};
+  std::vector<TakenStep> steps = {};
+};
   std::vector<Sample> samples = {};  ///< that these are of
 };
 std::string_view to_string(Taken::How how) noexcept;
@@ -44,7 +52,7 @@ struct TakenCounts {
 };
 
 /// A session that follows the study's rules ("online") for samples that do not come one after
-/// another.
+/// another, with its alarms.
 class OnlineSession {
  public:
   /// As Session; where late outputs correct the past, the components have to offer their states.
@@ -53,16 +61,25 @@ class OnlineSession {
   OnlineSession(OnlineSession&&) noexcept;
   OnlineSession& operator=(OnlineSession&&) noexcept;
 
-  Session& session();
   const Session& session() const;
+  /// As Session::prove_hulls.
+  void prove_hulls(bool wanted);
 
   /// Throws Errc::dimension, Errc::not_finite or Errc::invalid for what is refused: nothing has
-  /// happened then. Other errors are those of Session::step.
+  /// happened then. Any other error, and each after which `has_ended`, ends the session until
+  /// `start` or `restore`.
   Taken take(const GivenSample& sample);
+  /// Has a step ended with an error, or could its alarms not be told?
+  bool has_ended() const;
   const TakenCounts& counts() const;
 
+  const std::vector<Alarm>& alarms() const;  ///< that stand
+  std::vector<AlarmChange> acknowledge();    ///< all of them
+
+  /// Begins anew; alarms stay.
   void start();
-  /// As Session::save and restore, with what late outputs can still correct, and the counts.
+  /// As Session::save and restore, with what late outputs can still correct, the alarms and the
+  /// counts. What cannot be restored leaves a session that has begun anew, without alarms.
   std::string save();
   void restore(const std::string& saved);
 
