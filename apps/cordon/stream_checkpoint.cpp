@@ -29,8 +29,8 @@ std::optional<CheckpointState> Checkpoint::read() const {
     archive.expect_end();
     return state;
   } catch (const Error& error) {
-    throw InputError(file_.string(), {{"", error.what(),
-                                       "name another file, or remove this one to begin anew"}});
+    throw InputError(file_.string(),
+                     {{"", error.what(), "name another file, or remove this one to begin anew"}});
   }
 }
 

@@ -16,9 +16,8 @@ Result of_change(const char* function, const cordon_session* session, int i, Res
 template <class Result, class Get>
 Result of_alarm(const char* function, const cordon_session* session, int i, Result otherwise,
                 Get&& get) {
-  return c::got(function, otherwise, [&] {
-    return get(c::entry(c::session_of(session).online.alarms(), i, "alarm"));
-  });
+  return c::got(function, otherwise,
+                [&] { return get(c::entry(c::session_of(session).online.alarms(), i, "alarm")); });
 }
 
 }  // namespace

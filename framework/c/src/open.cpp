@@ -65,8 +65,7 @@ const auto of_warnings = [](const cordon_session& s) -> auto& { return s.warning
 
 cordon_session::cordon_session(const Study& study, const Registry& registry,
                                const std::string& pipeline)
-    : online(study, registry, pipeline),
-      warnings(study.warnings) {
+    : online(study, registry, pipeline), warnings(study.warnings) {
   const Model& model = online.session().model();
   names = {names_of(study.labels.states, "x", model.states()),
            names_of(study.labels.inputs, "u", model.inputs()),

@@ -42,7 +42,8 @@ void cordon_session::forget() {
 void cordon_session::take(const GivenSample& sample) {
   Taken taken = online.take(sample);
   for (TakenStep& step : taken.steps) {
-    for (c::Change& change : c::changes_of(std::move(step.alarms))) changes.push_back(std::move(change));
+    for (c::Change& change : c::changes_of(std::move(step.alarms)))
+      changes.push_back(std::move(change));
     results.push_back({std::move(step)});
   }
   said = std::move(taken.said);

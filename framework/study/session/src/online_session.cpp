@@ -46,7 +46,7 @@ Vector no_outputs(Index count) {
   return Vector::Constant(count, std::numeric_limits<double>::quiet_NaN());
 }
 
-constexpr const char* name_of_saved = "cordon online session 1";
+constexpr const char* saved_online_session = "cordon online session 1";
 
 }  // namespace
 
@@ -72,14 +72,15 @@ class OnlineSession::Intake {
   Intake(const Study& study, const Registry& registry, const std::string& pipeline)
       : rules_(study.online),
         session_(study, registry, pipeline),
-        alarms_(study, session_),
-        no_alarms_(alarms_) {
+        alarms_(study, session_) {
     if (corrects()) before_ = session_.save();
   }
 
   Taken take(const GivenSample& given) {
-    if (has_ended()) throw Error(Errc::plugin, "an earlier step has ended with an error; begin "
-                                               "anew, or go on from a state that was saved");
+    if (has_ended())
+      throw Error(Errc::plugin,
+                  "an earlier step has ended with an error; begin "
+                  "anew, or go on from a state that was saved");
     const std::optional<Index> last = session_.last();
     const Index next = last ? *last + 1 : given.k.value_or(0);
     const Sample sample = detail::sample_of(given.k.value_or(next), given.u, given.y);
@@ -102,22 +103,24 @@ class OnlineSession::Intake {
   }
 
   std::string save() {
-    if (has_ended()) throw Error(Errc::invalid, "a step has ended with an error: there is no state");
+    if (has_ended())
+      throw Error(Errc::invalid, "a step has ended with an error: there is no state");
     Archive archive(nullptr);
     serialize(archive);
-    return detail::sealed(name_of_saved, archive.bytes());
+    return detail::sealed(saved_online_session, archive.bytes());
   }
 
   void restore(const std::string& saved) {
+    Archive archive(nullptr, detail::unsealed(saved_online_session, saved));
+    const Alarms before = alarms_;
     try {
-      Archive archive(nullptr, detail::unsealed(name_of_saved, saved));
       ended_ = true;
       serialize(archive);
       archive.expect_end();
       ended_ = false;
     } catch (const Error&) {
       start();
-      alarms_ = no_alarms_;
+      alarms_ = before;
       throw;
     }
   }
@@ -184,9 +187,9 @@ class OnlineSession::Intake {
 
   void expect_fillable(Index k, Index next) const {
     if (rules_.jumps == JumpRule::refuse)
-      throw Error(Errc::invalid,
-                  jump(k, next) + "it is refused; with \"jumps\": \"fill\" in /online the times "
-                                  "between are taken without outputs");
+      throw Error(Errc::invalid, jump(k, next) +
+                                     "it is refused; with \"jumps\": \"fill\" in /online the times "
+                                     "between are taken without outputs");
     if (k - next > rules_.longest_gap)
       throw Error(Errc::invalid, jump(k, next) + "it is refused, as more than \"longest_gap\": " +
                                      std::to_string(rules_.longest_gap) + " times are missing");
@@ -195,7 +198,8 @@ class OnlineSession::Intake {
   Taken after_gap(const Sample& sample, Index next) {
     const Index gap = sample.k - next;
     Taken taken{Taken::How::filled,
-                jump(sample.k, next) + std::to_string(gap) + (gap == 1 ? " time is" : " times are") +
+                jump(sample.k, next) + std::to_string(gap) +
+                    (gap == 1 ? " time is" : " times are") +
                     " taken without outputs, and with the input of the sample before"};
     const Vector u = passed_.back().sample.u;
     for (Index k = next; k < sample.k; ++k)
@@ -267,7 +271,6 @@ class OnlineSession::Intake {
 
   std::deque<Passed> passed_;  ///< the last samples
   std::string before_;         ///< the session as it is, where late outputs correct
-  Alarms no_alarms_;
   bool ended_ = false;  ///< a change has ended half way
 };
 

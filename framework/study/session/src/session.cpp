@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* name_of_saved = "cordon session 1";
+constexpr const char* saved_session = "cordon session 1";
 
 /// Where the pipeline of this name stands. Throws InputError if there is none.
 std::size_t index_of(const Study& study, const std::string& name) {
@@ -117,12 +117,12 @@ class Session::Work {
     if (ended_) throw Error(Errc::invalid, "a step has ended with an error: there is no state");
     Archive archive(backend_);
     serialize(archive);
-    return detail::sealed(name_of_saved, archive.bytes());
+    return detail::sealed(saved_session, archive.bytes());
   }
 
   void restore(const std::string& saved) {
+    Archive archive(backend_, detail::unsealed(saved_session, saved));
     start();
-    Archive archive(backend_, detail::unsealed(name_of_saved, saved));
     try {
       serialize(archive);
       archive.expect_end();

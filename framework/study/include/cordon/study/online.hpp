@@ -41,8 +41,6 @@ struct Taken {
   /// In the order of times: those that were filled or taken again first.
   std::vector<TakenStep> steps = {};
 };
-  std::vector<Sample> samples = {};  ///< that these are of
-};
 std::string_view to_string(Taken::How how) noexcept;
 
 /// How many samples became what, beginnings anew included.
@@ -79,7 +77,7 @@ class OnlineSession {
   /// Begins anew; alarms stay.
   void start();
   /// As Session::save and restore, with what late outputs can still correct, the alarms and the
-  /// counts. What cannot be restored leaves a session that has begun anew, without alarms.
+  /// counts. Where a state does not fit, alarms stay.
   std::string save();
   void restore(const std::string& saved);
 

@@ -93,8 +93,8 @@ class Session {
   /// All that later steps depend on. Throws Errc::unsupported for components that do not offer it.
   std::string save();
   /// Goes on from what a session of the same pipeline has saved: later steps are those of that one,
-  /// bit by bit. Throws Errc::invalid for what is damaged, or of another pipeline or version; the
-  /// session has begun anew then.
+  /// bit by bit. Throws Errc::invalid for what is damaged, and nothing has happened then, or of
+  /// another pipeline or version: then the session has begun anew.
   void restore(const std::string& saved);
 
  private:

@@ -24,7 +24,8 @@ inline std::string unsealed(std::string_view name, std::string_view text) {
     throw Error(Errc::invalid, "is no " + std::string(name));
   const std::string_view bytes = text.substr(end + 1);
   if (fingerprint(bytes) != text.substr(begin, end - begin))
-    throw Error(Errc::invalid, "is a damaged " + std::string(name) + ": its check sum does not fit");
+    throw Error(Errc::invalid,
+                "is a damaged " + std::string(name) + ": its check sum does not fit");
   return std::string(bytes);
 }
 
