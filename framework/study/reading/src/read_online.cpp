@@ -7,7 +7,30 @@ namespace {
 
 constexpr double longest_lag = 10'000;
 
+/// The rule of that name; of no such one, the first.
+template <class Rule>
+void read_rule(const Cursor& at, const char* key, const std::vector<std::string>& names,
+               Rule& rule) {
+  const auto given = at.find(key);
+  if (given && read_choice(*given, names) == names[1]) rule = static_cast<Rule>(1);
+}
+
 }  // namespace
+
+const std::vector<std::string>& jump_rule_names() {
+  static const std::vector<std::string> names{"refuse", "fill"};
+  return names;
+}
+
+const std::vector<std::string>& late_rule_names() {
+  static const std::vector<std::string> names{"drop", "correct"};
+  return names;
+}
+
+const std::vector<std::string>& repeat_rule_names() {
+  static const std::vector<std::string> names{"refuse", "ignore"};
+  return names;
+}
 
 OnlineSpec read_online(const Cursor& at) {
   OnlineSpec spec;
@@ -15,20 +38,16 @@ OnlineSpec read_online(const Cursor& at) {
                       "rules for samples out of order: {\"jumps\": \"fill\", \"late\": "
                       "\"correct\", \"repeated\": \"ignore\"}"))
     return spec;
-  if (const auto jumps = at.find("jumps"))
-    if (read_choice(*jumps, {"refuse", "fill"}) == "fill") spec.jumps = JumpRule::fill;
+  read_rule(at, "jumps", jump_rule_names(), spec.jumps);
+  read_rule(at, "late", late_rule_names(), spec.late);
+  read_rule(at, "repeated", repeat_rule_names(), spec.repeated);
   if (const auto gap = at.find("longest_gap")) {
     spec.longest_gap = read_integer(*gap, 1, max_integer).value_or(spec.longest_gap);
     if (spec.jumps == JumpRule::refuse)
       gap->error("is of no use, as jumps are refused", "add \"jumps\": \"fill\", or leave it out");
   }
-  if (const auto late = at.find("late"))
-    if (read_choice(*late, {"drop", "correct"}) == "correct") spec.late = LateRule::correct;
   if (const auto lag = at.find("lag"))
     spec.lag = read_integer(*lag, 1, longest_lag).value_or(spec.lag);
-  if (const auto repeated = at.find("repeated"))
-    if (read_choice(*repeated, {"refuse", "ignore"}) == "ignore")
-      spec.repeated = RepeatRule::ignore;
   return spec;
 }
 

@@ -5,6 +5,7 @@
 
 #include "cordon/interfaces/nonlinear_model.hpp"
 #include "region_json.hpp"
+#include "resolve_online.hpp"
 #include "resolve_sweep.hpp"
 #include "study/reading/read_parts.hpp"
 #include "study/text/json_writer.hpp"
@@ -348,16 +349,6 @@ void print(const Json& value, detail::JsonWriter& json) {
   value.is_array() ? json.end_array() : json.end_object();
 }
 
-Json to_json(const OnlineSpec& spec) {
-  Json online;
-  online["jumps"] = spec.jumps == JumpRule::fill ? "fill" : "refuse";
-  if (spec.jumps == JumpRule::fill) online["longest_gap"] = spec.longest_gap;
-  online["late"] = spec.late == LateRule::correct ? "correct" : "drop";
-  online["lag"] = spec.lag;
-  online["repeated"] = spec.repeated == RepeatRule::ignore ? "ignore" : "refuse";
-  return online;
-}
-
 }  // namespace
 
 std::string resolve(const Study& study, const Written& written,
@@ -391,7 +382,7 @@ std::string resolve(const Study& study, const Written& written,
   root["metrics"] = Json::array();
   for (const ComponentSpec& spec : study.metrics)
     root["metrics"].push_back(to_json(spec, "metric", registry));
-  if (const Json online = to_json(study.online); online != to_json(OnlineSpec{}))
+  if (const Json online = resolved_online(study.online); online != resolved_online({}))
     root["online"] = online;
   if (!sweep.empty()) add_sweep(root, written.tree, sweep);
   detail::StringSink text;

@@ -317,22 +317,19 @@ Json sweep() {
 }
 
 Json online() {
-  const auto choice = [](const char* first, const char* second) {
-    return Json{{"enum", {first, second}}, {"default", first}};
-  };
   Json properties;
-  properties["jumps"] = described(choice("refuse", "fill"),
+  properties["jumps"] = described(one_of(json::jump_rule_names()),
                                   "times that are left out: refused, or taken without outputs");
   properties["longest_gap"] =
       described(Json{{"type", "integer"}, {"minimum", 1}, {"default", 1000}},
                 "times that are filled at most");
-  properties["late"] = described(choice("drop", "correct"),
+  properties["late"] = described(one_of(json::late_rule_names()),
                                  "outputs of times that have passed: left out, or the past is "
                                  "taken again with them");
   properties["lag"] =
       described(Json{{"type", "integer"}, {"minimum", 1}, {"maximum", 10'000}, {"default", 10}},
                 "samples that late outputs may lie behind the last one");
-  properties["repeated"] = described(choice("refuse", "ignore"),
+  properties["repeated"] = described(one_of(json::repeat_rule_names()),
                                      "a sample that brings nothing new: an error, or left out");
   return object(properties, {});
 }

@@ -70,9 +70,7 @@ std::string_view to_string(Taken::How how) noexcept {
 class OnlineSession::Intake {
  public:
   Intake(const Study& study, const Registry& registry, const std::string& pipeline)
-      : rules_(study.online),
-        session_(study, registry, pipeline),
-        alarms_(study, session_) {
+      : rules_(study.online), session_(study, registry, pipeline), alarms_(study, session_) {
     if (corrects()) before_ = session_.save();
   }
 
@@ -271,7 +269,7 @@ class OnlineSession::Intake {
 
   std::deque<Passed> passed_;  ///< the last samples
   std::string before_;         ///< the session as it is, where late outputs correct
-  bool ended_ = false;  ///< a change has ended half way
+  bool ended_ = false;         ///< a change has ended half way
 };
 
 OnlineSession::OnlineSession(const Study& study, const Registry& registry,

@@ -167,6 +167,9 @@ const std::vector<std::string>& parameter_draw_names();
 const std::vector<std::string>& missing_value_names();
 const std::vector<std::string>& irregular_rows_names();
 const std::vector<std::string>& on_empty_names();
+const std::vector<std::string>& jump_rule_names();
+const std::vector<std::string>& late_rule_names();
+const std::vector<std::string>& repeat_rule_names();
 const std::vector<std::string>& on_not_enclosed_names();
 std::vector<std::string> signal_keys(
     Signal::Type type);                               ///< without "type"; the required ones first

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// "online" in studies: read, resolved, described for editors, and every problem told at once.
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "online/study.hpp"
+
+using namespace online_test;
+
+TEST_CASE("the rules are read, and written into the resolved study where they are not the usual") {
+  const Loaded usual;
+  CHECK(usual.study.online.jumps == JumpRule::refuse);
+  CHECK(usual.study.online.late == LateRule::drop);
+  CHECK(usual.study.online.repeated == RepeatRule::refuse);
+  CHECK_FALSE(nlohmann::json::parse(usual.study.resolved).contains("online"));
+  const Loaded given(R"({"jumps": "fill", "longest_gap": 7, "late": "correct", "lag": 3})");
+  CHECK(given.study.online.jumps == JumpRule::fill);
+  CHECK(given.study.online.longest_gap == 7);
+  CHECK(given.study.online.late == LateRule::correct);
+  CHECK(given.study.online.lag == 3);
+  const auto resolved = nlohmann::json::parse(given.study.resolved)["online"];
+  CHECK(resolved == nlohmann::json{{"jumps", "fill"},
+                                   {"longest_gap", 7},
+                                   {"late", "correct"},
+                                   {"lag", 3},
+                                   {"repeated", "refuse"}});
+  const Loaded again(resolved.dump());
+  CHECK(again.study.resolved == given.study.resolved);
+}
+
+TEST_CASE("everything that is wrong with the rules is told at once") {
+  try {
+    const Loaded wrong(R"({"jumps": "fil", "late": 3, "lag": 0, "repeat": "ignore"})");
+    FAIL("wrong rules were taken");
+  } catch (const InputError& error) {
+    std::vector<std::string> places;
+    for (const Diagnostic& problem : error.diagnostics()) places.push_back(problem.pointer);
+    CHECK(places == std::vector<std::string>{"/online/repeat", "/online/jumps", "/online/late",
+                                             "/online/lag"});
+    CHECK(std::string(error.what()).find("fill") != std::string::npos);
+  }
+  CHECK_THROWS_WITH_AS(Loaded(R"({"longest_gap": 5})"), doctest::Contains("jumps are refused"),
+                       InputError);
+}
+
+TEST_CASE("editors know the rules") {
+  const Loaded loaded;
+  const auto schema = nlohmann::json::parse(study_json_schema(loaded.registry));
+  const auto& rules = schema["properties"]["online"]["properties"];
+  CHECK(rules["jumps"]["enum"] == nlohmann::json{"refuse", "fill"});
+  CHECK(rules["late"]["enum"] == nlohmann::json{"drop", "correct"});
+  CHECK(rules["repeated"]["enum"] == nlohmann::json{"refuse", "ignore"});
+  CHECK(rules["lag"]["maximum"] == 10'000);
+}
