@@ -184,7 +184,7 @@ class ValueBackend final : public SetBackend {
   }
   std::unique_ptr<const Set> do_serialize(const Set* X, Archive& archive) const override {
     if constexpr (requires(Value some) { representation_.serialize(some, archive); }) {
-      Value own = X ? value(*X) : Value{};
+      Value own = X ? value(*X) : Value();
       representation_.serialize(own, archive);
       if (X) return nullptr;
       return std::make_unique<Own>(*this, representation_, std::move(own));

@@ -118,14 +118,14 @@ struct Polyhedra {
   static Result held(View seen) {
     seen.claim = Tightness::exact;
     Polytope P = settled(plugins::polytope_of(seen));
-    return {Polyhedron(std::move(P), std::move(seen)), Tightness::outer};
+    return {Polyhedron(std::move(P), std::move(seen), true), Tightness::outer};
   }
   Result finish(Polytope P, Tightness claim = Tightness::exact) const {
     P = settled(std::move(P));
     if (P.bits() <= digits) return {Polyhedron(std::move(P)), claim};
     View seen = plugins::view_of(P);
     if (seen.claim == Tightness::outer) return held(std::move(seen));
-    return {Polyhedron(std::move(P), std::move(seen)), claim};
+    return {Polyhedron(std::move(P), std::move(seen), false), claim};
   }
 
   Result import_view(const View& X) const {
@@ -249,6 +249,30 @@ struct Polyhedra {
   LineForm line_form(const Value& X) const { return X.view().form; }
   bool has_exact_form(const Value& X) const { return X.view().is_exact_form(); }
   View view(const Value& X) const { return X.view(); }
+  /// What a rounded set was made of, or both descriptions, from which its view follows.
+  void serialize(Value& X, Archive& archive) const {
+    bool is_made_of_view = X.is_made_of_view;
+    archive(is_made_of_view);
+    View seen = !archive.is_reading() && is_made_of_view ? X.view() : View{};
+    std::string text =
+        !archive.is_reading() && !is_made_of_view ? X.set.descriptions() : std::string();
+    if (is_made_of_view) {
+      archive(seen.form, seen.rows.H, seen.rows.h);
+    } else {
+      archive(text);
+    }
+    if (!archive.is_reading()) return;
+    try {
+      const auto read = [&] {
+        if (!is_made_of_view) return Result{Polyhedron(Polytope::from_descriptions(text))};
+        check(seen, "a polytope that was saved");
+        return held(std::move(seen));
+      };
+      X = bounded(read).value;
+    } catch (const Error& error) {
+      archive.refuse(error.what());
+    }
+  }
   /// Both descriptions are found for the next step anyway.
   Complexity complexity(const Value& X) const {
     const Polytope::Generators all = X.set.generators();

@@ -26,9 +26,13 @@ Polytope polytope_of(const View& X);
 /// A polytope, and its view, found when somebody asks first.
 class Polyhedron {
  public:
+  Polyhedron() : set(Polytope::empty(0)) {}
   explicit Polyhedron(Polytope P) : set(std::move(P)) {}
-  /// `seen` is a view of P.
-  Polyhedron(Polytope P, View seen) : set(std::move(P)) { seen_->view = std::move(seen); }
+  /// `seen` is a view of P; `is_rounded`: it is what P was made of.
+  Polyhedron(Polytope P, View seen, bool is_rounded)
+      : set(std::move(P)), is_made_of_view(is_rounded) {
+    seen_->view = std::move(seen);
+  }
 
   const View& view() const {
     std::call_once(seen_->once, [this] {
@@ -38,6 +42,7 @@ class Polyhedron {
   }
 
   Polytope set;
+  bool is_made_of_view = false;
 
  private:
   struct Seen {

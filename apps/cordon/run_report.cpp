@@ -265,9 +265,12 @@ std::string report_text(const Study& study, const RunOutcome& outcome,
   RunOutcome observed;
   observed.measures = outcome.measures;
   // pipelines with a diagnoser or a designer have nothing to tell in the columns of this table
-  std::string diagnoses;
+  std::string diagnoses, limits;
   const Paint paint(stdout);
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    if (pipeline.left_open > 0)
+      limits += fmt::format("{}: \"max_programs\" has left questions open in {}\n", pipeline.name,
+                            count(pipeline.left_open, "step"));
     if (pipeline.design()) {
       diagnoses += design_text(study, pipeline, paint) + "\n";
     } else if (pipeline.diagnosis()) {
@@ -295,8 +298,8 @@ std::string report_text(const Study& study, const RunOutcome& outcome,
           ? fmt::format("Sampled every {:.6g} s: what is said is said of the sampled model\n",
                         study.labels.sampling_time)
           : "";
-  return title + comparison + details + diagnoses + sampled + "Results are in " + out.string() +
-         "\n";
+  return title + comparison + details + diagnoses + limits + sampled + "Results are in " +
+         out.string() + "\n";
 }
 
 std::string report_json(const Study& study, const RunOutcome& outcome) {

@@ -133,6 +133,11 @@ CORDON_COMMAND(stream) {
       ->check(CLI::Validator(path_problem, "", ""))
       ->option_text("DIR")
       ->excludes("--checkpoint");
+  command
+      ->add_flag("--watch", arguments->watch,
+                 "In place of the answers draw bounds, modes and alarms on the terminal, or write "
+                 "lines for people")
+      ->excludes("--sets");
   command->add_flag("--quiet", arguments->quiet, "Print no summary at the end");
   command->callback([&program, arguments] { program.exit = run_stream(program, *arguments); });
 }

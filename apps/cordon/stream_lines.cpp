@@ -37,7 +37,7 @@ std::string_view name_of(Request request) {
 
 }  // namespace
 
-std::string line_of(const TakenStep& step, const Session& session, LineOptions options) {
+std::string line_of(const TakenStep& step, const Session& session, bool with_set) {
   std::string text;
   const EstimateStep* const estimate = step.estimate ? &*step.estimate : nullptr;
   if (estimate && !estimate->is_last) {
@@ -46,15 +46,14 @@ std::string line_of(const TakenStep& step, const Session& session, LineOptions o
     text = json_of(step, session.modes());
     text.pop_back();
     if (estimate && estimate->estimate.k != step.k) text += fmt::format(", \"sample\": {}", step.k);
-    if (options.with_set && estimate)
-      text += ", \"set\": " + set_json_of(*estimate, session.name());
+    if (with_set && estimate) text += ", \"set\": " + set_json_of(*estimate, session.name());
   }
   if (step.diagnosis && !step.diagnosis->events.empty())
     text += ", \"events\": " + events_json_of(step.diagnosis->events, session.modes());
   if (estimate && estimate->restarted) text += ", \"restarted\": true";
   if (estimate && !estimate->not_enclosed.empty())
     text += ", \"not_enclosed\": " + detail::json_string(estimate->not_enclosed);
-  if (options.is_cut) text += ", \"deadline\": true";
+  if (step.left_open) text += ", \"left_open\": true";
   if (!step.alarms.empty()) text += ", \"alarms\": " + list_of(step.alarms);
   return text + "}\n";
 }

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "common.hpp"
-#include "cordon/solvers/deadline.hpp"
+#include "cordon/solvers/limits.hpp"
 #include "stream_lines.hpp"
 
 namespace cordon::apps {
@@ -30,6 +30,7 @@ StreamLoop::StreamLoop(const Study& study, const Registry& registry,
       output_(STDOUT_FILENO, stop),
       checkpoint_(arguments.checkpoint) {
   session_.prove_hulls(arguments.sets);
+  if (arguments.watch) view_.emplace(study, session_, terminal_size());
   if (!arguments.record.empty())
     record_.emplace(arguments.record, study, session_.session().name());
   if (!arguments.replay.empty()) replayed_.emplace(arguments.replay, session_.session().name());
@@ -57,6 +58,8 @@ bool StreamLoop::restore() {
     return true;
   }
   const Index next = session_.session().last().value_or(-1) + 1;
+  if (view_)
+    return output_.write(fmt::format("goes on from k = {}, after {} lines\n", next, line_));
   return output_.write(
       fmt::format("{{\"restored\": true, \"next\": {}, \"lines\": {}}}\n", next, line_));
 }
@@ -71,6 +74,7 @@ void StreamLoop::run() {
     if (!answer(line)) break;
     if (!arguments_.checkpoint.empty() && since_checkpoint_ >= arguments_.every) save();
   }
+  if (view_) output_.write(view_->last());
   wall_s_ = std::chrono::duration<double>(Clock::now() - begin).count();
   if (!arguments_.checkpoint.empty()) save();
   if (replayed_) complaints_ = replayed_->differences();
@@ -121,9 +125,9 @@ bool StreamLoop::answer(const std::string& line) {
   } catch (const Error& error) {
     if (session_.has_ended() || !is_of_the_line(error)) throw;
     ++refused_;
-    text = error_line(error, line_);
+    text = view_ ? view_->show(error, line_) : error_line(error, line_);
   }
-  if (!output_.write(text)) return false;
+  if (!text.empty() && !output_.write(text)) return false;
   latency_us_.add(std::chrono::duration<double, std::micro>(Clock::now() - begin).count());
   return true;
 }
@@ -133,44 +137,42 @@ std::string StreamLoop::answer_to(const GivenLine& given) {
   std::vector<AlarmChange> changes;
   if (given.request == Request::acknowledge) {
     changes = session_.acknowledge();
-    text = line_of(*given.request, changes);
+    text = view_ ? view_->show(changes) : line_of(*given.request, changes);
   } else if (given.request) {
     if (record_)
       throw Error(Errc::invalid,
                   "a stream that is recorded does not begin anew; end it, and start "
                   "another one");
     session_.start();
-    text = line_of(*given.request, {});
+    text = view_ ? view_->begin_anew() : line_of(*given.request, {});
   }
   std::optional<Taken> taken;
-  bool is_cut = false;
-  if (given.sample) taken = take(*given.sample, is_cut);
+  if (given.sample) taken = take(*given.sample);
   if (log_) written("the log was not written", [&] { log_->write(log_line(given)); });
   keep(changes);
-  return taken ? answer_to(*taken, is_cut) : text;
+  return taken ? answer_to(*taken) : text;
 }
 
-Taken StreamLoop::take(const GivenSample& sample, bool& is_cut) {
+Taken StreamLoop::take(const GivenSample& sample) {
   if (!(arguments_.deadline_us > 0)) return session_.take(sample);
   const std::chrono::duration<double, std::micro> limit(arguments_.deadline_us);
-  const Deadline deadline(Clock::now() + std::chrono::duration_cast<Clock::duration>(limit));
-  Taken taken = session_.take(sample);
-  is_cut = deadline.has_ended_any();
-  cut_ += is_cut;
-  return taken;
+  const LimitedSolvers limits(
+      {Clock::now() + std::chrono::duration_cast<Clock::duration>(limit), {}});
+  return session_.take(sample);
 }
 
-std::string StreamLoop::answer_to(const Taken& taken, bool is_cut) {
+std::string StreamLoop::answer_to(const Taken& taken) {
   std::string text;
-  if (taken.how != Taken::How::taken) text = line_of(taken, line_);
+  if (taken.how != Taken::How::taken && !view_) text = line_of(taken, line_);
   keep_record([&] {
     for (const TakenStep& step : taken.steps) record_->take(step.sample);
   });
   for (const TakenStep& step : taken.steps) {
     keep(step.alarms);
-    text += line_of(step, session_.session(), {arguments_.sets, is_cut});
+    left_open_ += step.left_open;
+    if (!view_) text += line_of(step, session_.session(), arguments_.sets);
   }
-  return text;
+  return view_ ? view_->show(taken) : text;
 }
 
 void StreamLoop::keep(const std::vector<AlarmChange>& changes) {
@@ -192,9 +194,10 @@ std::string StreamLoop::summary() const {
   add(counts.corrected, "corrected");
   add(counts.late, "late");
   add(counts.repeated, "repeated");
-  add(cut_, "with questions that the deadline has left open");
+  add(left_open_, "steps with questions that limits of work have left open");
   add(unwritten_, "not written");
-  add(static_cast<std::int64_t>(session_.alarms().size()), "alarms stand");
+  const std::size_t alarms = session_.alarms().size();
+  if (alarms > 0) text += fmt::format(", {} alarm{}", alarms, alarms == 1 ? " stands" : "s stand");
   if (replayed_) text += fmt::format(", {} alarm changes as in the log", replayed_->agreed());
   if (samples == 0) return text;
   return text + fmt::format(

@@ -14,6 +14,7 @@
 #include "stream_checkpoint.hpp"
 #include "stream_log.hpp"
 #include "stream_record.hpp"
+#include "stream_view.hpp"
 #include "study/results/quantiles.hpp"
 
 namespace cordon::apps {
@@ -25,7 +26,7 @@ struct StreamArguments {
   std::filesystem::path checkpoint, log, replay, record;  ///< empty: none
   std::int64_t every = 100;
   double deadline_us = 0;  ///< of a step; 0: none
-  bool sets = false, quiet = false;
+  bool sets = false, watch = false, quiet = false;
 };
 
 class StreamLoop {
@@ -50,9 +51,9 @@ class StreamLoop {
   /// False: nobody reads on, or a signal came.
   bool answer(const std::string& line);
   std::string answer_to(const GivenLine& given);
-  /// Within the deadline, if there is one; `is_cut`: it has left a question open.
-  Taken take(const GivenSample& sample, bool& is_cut);
-  std::string answer_to(const Taken& taken, bool is_cut);
+  /// Within the deadline, if there is one.
+  Taken take(const GivenSample& sample);
+  std::string answer_to(const Taken& taken);
   void keep(const std::vector<AlarmChange>& changes);
   /// What could not be written is said, and the stream goes on.
   template <class Work>
@@ -70,9 +71,10 @@ class StreamLoop {
   std::optional<StreamLog> log_;
   std::optional<ReplayedLog> replayed_;
   std::optional<StreamRecord> record_;
+  std::optional<StreamView> view_;  ///< in place of lines for programs
   Checkpoint checkpoint_;
   detail::Quantiles latency_us_;
-  std::int64_t line_ = 0, refused_ = 0, since_checkpoint_ = 0, unwritten_ = 0, cut_ = 0;
+  std::int64_t line_ = 0, refused_ = 0, since_checkpoint_ = 0, unwritten_ = 0, left_open_ = 0;
   std::vector<std::string> complaints_;
   double wall_s_ = 0;
 };

@@ -65,6 +65,12 @@ std::string describe_samples(const Study& study, const DataOverview& data) {
   return text + gaps;
 }
 
+/// Has it pipelines that take samples?
+bool takes_samples(const Study& study) {
+  return std::any_of(study.pipelines.begin(), study.pipelines.end(),
+                     [](const PipelineSpec& pipeline) { return !pipeline.design(); });
+}
+
 std::string describe_data(const Study& study, const DataOverview& data) {
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
     const std::string by = simulate->plant      ? " by " + simulate->plant->type
@@ -74,10 +80,9 @@ std::string describe_data(const Study& study, const DataOverview& data) {
                         last = first + static_cast<std::uint64_t>(simulate->seeds) - 1;
     const std::string seeds =
         last == first ? fmt::format("seed {}", first) : fmt::format("seeds {} to {}", first, last);
-    const bool designed =
-        std::all_of(study.pipelines.begin(), study.pipelines.end(),
-                    [](const PipelineSpec& pipeline) { return pipeline.design() != nullptr; });
-    if (designed) return "experiments with every mode and the designed inputs, " + seeds;
+    if (!takes_samples(study))
+      return "experiments with every mode and the designed inputs, " + seeds;
+    if (!study.has_data) return "none: samples come on line";
     return fmt::format("simulated{}, {}, {}", by, count(simulate->steps, "step"), seeds);
   }
   return "recorded, " + std::get<CsvSpec>(study.data).file.string() + describe_samples(study, data);
@@ -219,6 +224,7 @@ std::vector<std::exception_ptr> wrong_data(const Study& study, const Registry& r
       if (known.insert(error.what()).second) errors.push_back(std::current_exception());
     }
   };
+  if (!study.has_data && takes_samples(study)) return {};  // they come on line
   open([&] { return study; });
   for (std::size_t axis = 0; axis < study.sweep.size(); ++axis) {
     if (!study.sweep[axis].path.starts_with("/data/csv") && study.sweep[axis].path != "/data")
@@ -281,7 +287,8 @@ Exit validate_one(const std::string& file, const Program& program, Json* entries
     Registry registry;
     registry.load(SearchPath{program.plugins});
     const StudyPlugins plugins = program.trust_plugins ? StudyPlugins::load : StudyPlugins::ignore;
-    const Study study = read_study(file, registry, default_search_path(), plugins);
+    const Study study =
+        read_study(file, registry, default_search_path(), plugins, StudyData::needed_unless_online);
     if (const auto wrong = wrong_data(study, registry); !wrong.empty())
       return refuse(file, wrong, entries);
     const DataOverview data = overview_of(study);

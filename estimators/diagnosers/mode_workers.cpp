@@ -14,6 +14,8 @@
 #include <boost/asio/thread_pool.hpp>
 #include <boost/system/system_error.hpp>
 
+#include "cordon/solvers/limits.hpp"
+
 namespace cordon::estimators {
 
 struct ModeWorkers::Pool {
@@ -41,8 +43,15 @@ ModeWorkers::~ModeWorkers() {
 }
 
 void ModeWorkers::for_each(Index count, const std::function<void(Index)>& work) {
+  const SolverLimits limits = LimitedSolvers::of_this_thread();
+  std::atomic<bool> left_open = false;
+  const auto limited = [&](Index j) {
+    const LimitedSolvers solvers(limits);
+    work(j);
+    if (solvers.left_open()) left_open = true;
+  };
   if (!pool_ || count < 2) {
-    for (Index j = 0; j < count; ++j) work(j);
+    for (Index j = 0; j < count; ++j) limited(j);
     return;
   }
   const auto threads = std::min(pool_->size, static_cast<std::size_t>(count));
@@ -53,7 +62,7 @@ void ModeWorkers::for_each(Index count, const std::function<void(Index)>& work) 
     boost::asio::post(pool_->threads, [&] {
       for (Index j = next++; j < count; j = next++) {
         try {
-          work(j);
+          limited(j);
         } catch (...) {
           failures[static_cast<std::size_t>(j)] = std::current_exception();
         }
@@ -62,6 +71,7 @@ void ModeWorkers::for_each(Index count, const std::function<void(Index)>& work) 
     });
   }
   done.wait();
+  LimitedSolvers::tell_left_open(left_open);
   for (const std::exception_ptr& failure : failures) {
     if (failure) std::rethrow_exception(failure);
   }

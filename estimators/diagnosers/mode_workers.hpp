@@ -19,7 +19,8 @@ class ModeWorkers {
   ModeWorkers(const ModeWorkers&) = delete;
   ModeWorkers& operator=(const ModeWorkers&) = delete;
 
-  /// work(0), …, work(count - 1), and waits for all of them. Of several exceptions, that of the
+  /// work(0), …, work(count - 1), and waits for all of them. Each has the limits of the caller's
+  /// solvers, and the whole number of programs. Of several exceptions, that of the
   /// lowest index is thrown.
   void for_each(Index count, const std::function<void(Index)>& work);
 

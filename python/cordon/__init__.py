@@ -6,6 +6,7 @@
     diagnose   which faults are possible                       cordon.Diagnoser
     design     inputs that tell faults apart                   cordon.design_input
     study      studies: read, changed, run, verified           cordon.Study
+    session    a study's pipeline beside a plant, with alarms  cordon.Session
     results    what a run has left, as arrays                  cordon.Results
     plot       figures with matplotlib                         cordon.plot
     extend     observers, metrics and plants in Python         cordon.extend.register
@@ -26,6 +27,7 @@ from .estimate import Estimate, Gain, Observer
 from .extend import Law, conform
 from .known import ComponentInfo, ParameterInfo, components, info
 from .results import ComparedNumber, Comparison, Pipeline, Results, compare
+from .session import Alarm, AlarmChange, Session, SessionStep, Taken
 from .sets import (Hull, Set, Support, Volume, constrained_zonotope, empty, interval, line_zonotope,
                    point, polytope, space, strip, zonotope)
 from .study import Study, SweepResults
@@ -34,13 +36,13 @@ from .written import Model
 __version__ = _cordon.version()
 
 __all__ = [
-    "Answer", "ArgumentError", "ArgumentTypeError", "Certificate", "ComparedNumber", "Comparison",
-    "ComponentInfo", "Design", "Diagnoser", "Diagnosis", "Error", "Estimate", "FaultBound", "Gain",
-    "Hull", "InputError", "Law", "Model", "Observer", "ParameterInfo", "Pipeline", "Problem",
-    "Results", "Set", "Statement", "Study", "Support", "SweepResults", "Volume", "compare",
-    "components", "conform", "constrained_zonotope", "design_input", "designs_of", "empty",
-    "extend", "info", "interval", "line_zonotope", "plot", "point", "polytope", "space", "strip",
-    "zonotope",
+    "Alarm", "AlarmChange", "Answer", "ArgumentError", "ArgumentTypeError", "Certificate",
+    "ComparedNumber", "Comparison", "ComponentInfo", "Design", "Diagnoser", "Diagnosis", "Error",
+    "Estimate", "FaultBound", "Gain", "Hull", "InputError", "Law", "Model", "Observer",
+    "ParameterInfo", "Pipeline", "Problem", "Results", "Session", "SessionStep", "Set",
+    "Statement", "Study", "Support", "SweepResults", "Taken", "Volume", "compare", "components",
+    "conform", "constrained_zonotope", "design_input", "designs_of", "empty", "extend", "info",
+    "interval", "line_zonotope", "plot", "point", "polytope", "space", "strip", "zonotope",
 ]
 
 

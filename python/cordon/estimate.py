@@ -38,6 +38,14 @@ class Estimate:
         self._answer = answer
         self._hull: Optional[Hull] = None
 
+    @classmethod
+    def with_hull(cls, told: Tuple[Any, ...], hull: Optional[Tuple[Any, ...]]) -> "Estimate":
+        """Of a session, which has computed the hull already where the set is not empty."""
+        estimate = cls(*told)
+        if hull is not None:
+            estimate._hull = estimate.set._hull_of(*hull)
+        return estimate
+
     @property
     def consistent(self) -> Answer:
         """Is the set not empty?"""

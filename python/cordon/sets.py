@@ -251,7 +251,9 @@ class Set(Refused):
 
     def hull(self) -> Hull:
         """The smallest box around X as far as proven."""
-        lower, upper, proofs = self._set.hull()
+        return self._hull_of(*self._set.hull())
+
+    def _hull_of(self, lower: Floats, upper: Floats, proofs: List[Any]) -> Hull:
         if (lower > upper).any():  # empty, which is what is proven
             proofs = [self._set.is_empty()[1]] * len(proofs)
         made: List[Optional[Certificate]] = []

@@ -21,6 +21,7 @@ void bind_errors(py::module_& module);
 void bind_sets(py::module_& module);
 void bind_components(py::module_& module);
 void bind_studies(py::module_& module);
+void bind_sessions(py::module_& module);
 void bind_extensions(py::module_& module);
 void bind_info(py::module_& module);
 

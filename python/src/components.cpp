@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Observers, diagnosers and designers of a study's pipelines, one sample at a time.
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <pybind11/stl.h>
 #include <string>
@@ -11,6 +10,7 @@
 #include "cordon/cordon.hpp"
 #include "cordon/study/design.hpp"
 #include "cordon/study/outcome.hpp"
+#include "samples.hpp"
 #include "study_handle.hpp"
 
 namespace cordon::python {
@@ -25,61 +25,6 @@ const PipelineSpec& pipeline_of(const Study& study, std::size_t index) {
 
 std::shared_ptr<const SetBackend> backend_of(const PipelineSpec& spec) {
   return installed_components().make<BackendEntry>(spec.backend.type, spec.backend.params);
-}
-
-/// While one thread works with an object no other one can.
-class Turn {
- public:
-  explicit Turn(std::atomic_flag& busy) : busy_(busy) {
-    if (busy_.test_and_set())
-      throw std::runtime_error(
-          "this object is at work in another thread: each thread needs its own");
-  }
-  ~Turn() { busy_.clear(); }
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
-
- private:
-  std::atomic_flag& busy_;
-};
-
-/// Indices of outputs, ascending.
-std::vector<Index> missing_of(py::handle given) {
-  std::vector<Index> missing;
-  for (const py::handle& one : given) {
-    const bool is_numpy = py::hasattr(one, "dtype");
-    if (py::isinstance<py::bool_>(one) ||
-        (is_numpy && one.attr("dtype").attr("kind").cast<std::string>() == "b")) {
-      throw py::type_error(
-          "missing names outputs by their indices, from 0; those of a mask are "
-          "np.flatnonzero(mask)");
-    }
-    if (PyIndex_Check(one.ptr()) == 0) {
-      throw py::type_error("missing: indices of outputs are needed, as [0], not " +
-                           py::repr(one).cast<std::string>());
-    }
-    missing.push_back(py::reinterpret_steal<py::object>(PyNumber_Index(one.ptr())).cast<Index>());
-  }
-  std::sort(missing.begin(), missing.end());
-  missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
-  return missing;
-}
-
-/// The sample of the next time. NaN among the outputs is refused here: what is missing is named.
-Sample sample_of(Index k, py::handle u, py::handle y, py::handle outputs) {
-  const std::vector<Index> missing = missing_of(outputs);
-  Sample sample{k, u.is_none() ? Vector(0) : vector_of(u, "u"), vector_of(y, "y")};
-  for (const Index i : missing) {
-    if (i < 0 || i >= sample.y.size())
-      throw py::index_error("missing: there is no output " + std::to_string(i));
-  }
-  for (Index i = 0; i < sample.y.size(); ++i) {
-    if (std::isnan(sample.y[i]) && std::find(missing.begin(), missing.end(), i) == missing.end()) {
-      throw py::value_error("y[" + std::to_string(i) + "] is NaN; an output without a value is " +
-                            "named: missing=[" + std::to_string(i) + "]");
-    }
-  }
-  return missing_outputs(std::move(sample), missing);
 }
 
 /// What is told of each row, in one go, without the lock of the interpreter; `next` is the time of
@@ -143,7 +88,7 @@ class ObserverHandle {
     const Sample sample = sample_of(next_, u, y, missing);
     const Estimate estimate = unlocked([&] { return stepped(sample); });
     ++next_;
-    return told(estimate);
+    return estimate_of(estimate);
   }
 
   /// All rows in one go, without the lock of the interpreter.
@@ -152,7 +97,7 @@ class ObserverHandle {
     py::list made;
     for (const Estimate& estimate : of_rows<Estimate>(
              u, y, nan_is_missing, next_, [&](const Sample& sample) { return stepped(sample); }))
-      made.append(told(estimate));
+      made.append(estimate_of(estimate));
     return made;
   }
 
@@ -205,10 +150,6 @@ class ObserverHandle {
     if (const auto& found = observer_->contradiction()) contradiction_ = found;
     return estimate;
   }
-  static py::tuple told(const Estimate& estimate) {
-    return py::make_tuple(estimate.k, ConvexSet(estimate.set),
-                          answer_of(estimate.consistent, estimate.why));
-  }
 
   StudyHandle study_;
   std::string type_;
@@ -218,33 +159,6 @@ class ObserverHandle {
   Index next_ = 0;
   std::atomic_flag busy_;
 };
-
-py::dict evidence_of(const ModeEvidence& evidence) {
-  py::dict made;
-  made["candidate"] = evidence.candidate;
-  made["consistent"] = answer_of(evidence.consistent, evidence.why);
-  if (evidence.residual.dim() > 0) made["residual"] = box_of(evidence.residual);
-  if (!evidence.left_open.empty()) made["left_open"] = evidence.left_open;
-  return made;
-}
-
-py::dict diagnosis_of(const Diagnosis& found) {
-  py::dict made;
-  made["k"] = found.k;
-  made["decision"] = std::string(to_string(found.decision));
-  made["mode"] = found.mode;
-  made["since"] = found.since;
-  made["reset"] = found.reset;
-  made["suggested"] = found.suggested;
-  py::list modes, faults;
-  for (const ModeEvidence& evidence : found.modes) modes.append(evidence_of(evidence));
-  for (const FaultBound& bound : found.faults)
-    faults.append(py::make_tuple(bound.fault, bound.at, bound.lower, bound.upper, bound.estimate));
-  made["modes"] = modes;
-  made["faults"] = faults;
-  made["estimate"] = found.estimate ? py::cast(ConvexSet(*found.estimate)) : py::object(py::none());
-  return made;
-}
 
 class DiagnoserHandle {
  public:

@@ -8,6 +8,7 @@ PYBIND11_MODULE(_cordon, module) {
   cordon::python::bind_sets(module);
   cordon::python::bind_components(module);
   cordon::python::bind_studies(module);
+  cordon::python::bind_sessions(module);
   cordon::python::bind_extensions(module);
   cordon::python::bind_info(module);
 }

@@ -16,7 +16,7 @@ def blocks(page):
             for found in re.finditer(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)]
 
 
-@pytest.mark.parametrize("page, count", [("docs/python.md", 18), ("README.md", 1)])
+@pytest.mark.parametrize("page, count", [("docs/python.md", 21), ("README.md", 1)])
 def test_code_of_pages_runs(page, count, monkeypatch, capsys, tmp_path):
     pytest.importorskip("matplotlib").use("Agg")
     (tmp_path / "examples").symlink_to(REPOSITORY / "examples")

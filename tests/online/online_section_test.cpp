@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "online/study.hpp"
+#include "run/program.hpp"
 
 using namespace online_test;
 
@@ -41,6 +42,26 @@ TEST_CASE("everything that is wrong with the rules is told at once") {
   }
   CHECK_THROWS_WITH_AS(Loaded(R"({"longest_gap": 5})"), doctest::Contains("jumps are refused"),
                        InputError);
+}
+
+TEST_CASE("a study needs no data for `cordon validate` where samples come on line") {
+  const Scratch scratch;
+  const auto file = [&](const std::string& online) {
+    return scratch.write("study.json", study_text(online)).string();
+  };
+  const test::Outcome without = test::cordon_with("validate " + file(""));
+  CHECK(without.code == 2);
+  CHECK(without.err.find("/data") != std::string::npos);
+  const test::Outcome with = test::cordon_with("validate " + file("{}"));
+  CHECK_MESSAGE(with.code == 0, with.err);
+  CHECK(with.out.find("samples come on line") != std::string::npos);
+  const test::Outcome ran = test::cordon_with("run " + file("{}"));
+  CHECK(ran.code == 2);
+  CHECK(ran.err.find("/data") != std::string::npos);
+  const Loaded loaded("{}");
+  CHECK_FALSE(nlohmann::json::parse(loaded.study.resolved).contains("data"));
+  const auto schema = nlohmann::json::parse(study_json_schema(loaded.registry));
+  CHECK(schema["allOf"][0]["else"]["anyOf"][1]["required"][0] == "online");
 }
 
 TEST_CASE("editors know the rules") {

@@ -232,7 +232,7 @@ TEST_CASE("lengths beyond the end ask for no memory") {
 
 TEST_CASE("damaged bytes are refused, or read as something else") {
   for (const char* name :
-       {"line_zonotope", "constrained_zonotope", "zonotope", "interval", "ellipsoid"}) {
+       {"line_zonotope", "constrained_zonotope", "zonotope", "interval", "ellipsoid", "polytope"}) {
     CAPTURE(std::string(name));
     const auto backend = examples::backend(name);
     const std::string bytes = written(filled(*backend), backend);

@@ -187,6 +187,30 @@ TEST_CASE("observers go on from a saved state with the same bits") {
   MESSAGE(trials, " observers");
 }
 
+TEST_CASE("observers of polytopes go on from a saved state with the same bits") {
+  const Params rounds = Params().set("digits", std::int64_t{0}).set("facets", std::int64_t{4}),
+               late = Params().set("digits", std::int64_t{3000}).set("facets", std::int64_t{8});
+  int trials = 0, refused = 0;
+  for (const Params& params : {rounds, late}) {
+    for (const Choice& choice : choices()) {
+      const std::string& name = choice.observer;  // others take polytopes of more than four states
+      if (name != "prediction_correction" && name != "luenberger" && name != "descriptor") continue;
+      for (const Kind kind : {Kind::plain, Kind::descriptor}) {
+        CAPTURE(name);
+        auto trial = trial_of(choice, {"polytope", params}, kind, 2);
+        if (!trial) continue;
+        trial->samples.resize(10);
+        const auto told = check_going_on(*trial, {0, 1, 6});
+        refused += check_damage(*trial, told.saved.at(6), 6, 10, 1);
+        ++trials;
+      }
+    }
+  }
+  CHECK(trials >= 8);
+  CHECK(refused > 2 * trials);
+  MESSAGE(trials, " observers");
+}
+
 TEST_CASE("damaged states of observers are refused, or lead somewhere") {
   std::uint64_t seed = 0;
   int refused = 0, all = 0;

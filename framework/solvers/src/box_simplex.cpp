@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cordon/solvers/deadline.hpp"
+#include "cordon/solvers/limits.hpp"
 
 namespace cordon {
 
@@ -115,12 +115,12 @@ constexpr Index look_at_clock = 16;  // iterations
 
 BoxSimplex::Status BoxSimplex::solve(double enough, Index most) {
   iterations_ = 0;
-  if (!take_objective()) return Status::unsolved;
+  if (!LimitedSolvers::may_begin() || !take_objective()) return Status::unsolved;
   bool rebuilt = false;
   Index idle = 0;
   for (const Index limit = std::min(most, 200 + 20 * (m_ + g_)); iterations_ < limit;
        ++iterations_) {
-    if (iterations_ % look_at_clock == 0 && Deadline::is_over()) return Status::unsolved;
+    if (iterations_ % look_at_clock == 0 && LimitedSolvers::is_over()) return Status::unsolved;
     const bool is_below = enough > any && objective() < enough;
     const Index row = is_below ? none : leaving_row();
     if (row == none && perturbed_) {

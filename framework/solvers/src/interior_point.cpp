@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "cordon/core/linalg.hpp"
-#include "cordon/solvers/deadline.hpp"
+#include "cordon/solvers/limits.hpp"
 
 namespace cordon {
 
@@ -124,6 +124,7 @@ void InteriorPoint::solve(const Vector& rest_above, const Vector& rest_below,
 }
 
 bool InteriorPoint::maximize(VectorIn g) {
+  if (!LimitedSolvers::may_begin()) return false;
   const Index m = A_.rows(), cols = A_.cols();
   xi_ = Vector::Zero(cols);
   y_ = Vector::Zero(m);
@@ -131,7 +132,7 @@ bool InteriorPoint::maximize(VectorIn g) {
   below_ = (-g).cwiseMax(0.0).array() + 1;
   Direction step;
   for (Index round = 0; round < most_rounds; ++round) {
-    if (Deadline::is_over()) return false;
+    if (LimitedSolvers::is_over()) return false;
     to_upper_ = 1 - xi_.array();
     to_lower_ = 1 + xi_.array();
     rows_left_ = b_ - linalg::product(A_, xi_);

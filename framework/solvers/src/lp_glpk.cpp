@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cordon/core/error.hpp"
-#include "cordon/solvers/deadline.hpp"
+#include "cordon/solvers/limits.hpp"
 #include "cordon/solvers/lp.hpp"
 #include "glpk_environment.hpp"
 
@@ -93,7 +93,7 @@ LinearProgram::Solution LinearProgram::maximize(VectorIn g) {
     throw Error(Errc::dimension, "linear program: the objective has the wrong size");
   require_number(g.allFinite(), "a NaN or infinite objective");
   Solution solution;
-  if (!s.alive() || Deadline::is_over()) return solution;
+  if (!s.alive() || !LimitedSolvers::may_begin()) return solution;
   Vector x(s.cols), y(s.rows);
   int code = -1, status = GLP_UNDEF;
   guarded([&] {
@@ -102,13 +102,13 @@ LinearProgram::Solution LinearProgram::maximize(VectorIn g) {
     glp_init_smcp(&control);
     control.msg_lev = GLP_MSG_OFF;
     control.it_lim = static_cast<int>(std::min<Index>(1'000'000, 1000 + 100 * (s.rows + s.cols)));
-    control.tm_lim = Deadline::milliseconds_left(std::numeric_limits<int>::max());
+    control.tm_lim = LimitedSolvers::milliseconds_left(std::numeric_limits<int>::max());
     // With boxed variables every basis is dual feasible: the dual method needs no first phase,
     // whatever the last direction was.
     control.meth = GLP_DUALP;
     code = glp_simplex(s.problem, &control);
     status = glp_get_status(s.problem);
-    if (!Deadline::is_over() && (code != 0 || status == GLP_UNDEF || status == GLP_INFEAS)) {
+    if (!LimitedSolvers::is_over() && (code != 0 || status == GLP_UNDEF || status == GLP_INFEAS)) {
       glp_std_basis(s.problem);
       control.meth = GLP_PRIMAL;
       code = glp_simplex(s.problem, &control);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cordon/solvers/deadline.hpp"
+#include "cordon/solvers/limits.hpp"
 
 namespace cordon {
 
@@ -14,7 +14,7 @@ namespace {
 /// Rational arithmetic beyond about a second is not worth an answer. Numbers grow with the spread
 /// of the exponents.
 bool is_affordable(double operations, MatrixIn S, MatrixIn A) {
-  if (Deadline::is_over()) return false;
+  if (LimitedSolvers::is_over()) return false;
   double smallest = infinity, largest = 0;
   for (const MatrixIn* block : {&S, &A}) {
     for (Index j = 0; j < block->cols(); ++j) {

@@ -66,10 +66,16 @@ void check_admissible(const Cursor& option, const SystemPart& system) {
                  "give the system an \"admissible\" set with finite bounds");
 }
 
-/// What becomes of samples that contradict the model: keys that belong to an observer.
+/// The limit of work, and what becomes of samples that contradict the model: keys that belong to an
+/// observer.
 void read_options(const Cursor& at, const SystemPart& system, const ComponentContext& context,
                   PipelineSpec& spec) {
   EstimationSpec* const estimation = spec.estimation();
+  if (const auto most = at.find("max_programs")) {
+    spec.max_programs = read_integer(*most, 0, max_integer);
+    if (spec.design())
+      most->error("belongs to pipelines with an observer or a diagnoser", "remove it here");
+  }
   const auto on_empty = at.find("on_empty"), restart_set = at.find("restart_set"),
              outliers = at.find("outliers"), on_not_enclosed = at.find("on_not_enclosed");
   for (const auto& option : {on_empty, restart_set, outliers, on_not_enclosed}) {
@@ -147,7 +153,7 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
   const std::string form =
       "{\"name\": ..., \"backend\": {\"type\": ...}, \"observer\": {\"type\": ...}}";
   if (!at.expect_keys({"name", "backend", "observer", "diagnoser", "designer", "on_empty",
-                       "restart_set", "on_not_enclosed", "outliers"},
+                       "restart_set", "on_not_enclosed", "outliers", "max_programs"},
                       "key of a pipeline", form))
     return spec;
   const auto backend_at = at.need("backend", "the set representation: {\"type\": ...}");

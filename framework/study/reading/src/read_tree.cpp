@@ -74,12 +74,16 @@ void TreeReader::read_sections() {
   if (const auto at = root_.need("system", "the plant: {\"type\": \"lti\", ...}"))
     system = read_known_system(*at);
   const DataUse use = data_use(root_);
+  const auto online = root_.find("online");
+  const bool needs_data = options_.data == StudyData::needed ||
+                          (options_.data == StudyData::needed_unless_online && !online);
   const auto data =
-      use.streamed() && options_.data == StudyData::needed
+      use.streamed() && needs_data
           ? root_.need("data", "{\"simulate\": {...}} or {\"csv\": {...}}" + use.reason())
           : root_.find("data");
   if (data) {
     DataPart part = read_data(*data, system, use, options_.folder, context);
+    study.has_data = true;
     study.data = std::move(part.data);
     written.faults = std::move(part.written_faults);
     written.csv_file = std::move(part.written_file);
@@ -92,7 +96,7 @@ void TreeReader::read_sections() {
     });
   }
   if (const auto at = root_.find("metrics")) study.metrics = read_metrics(*at, system, context);
-  if (const auto at = root_.find("online")) study.online = read_online(*at);
+  if (online) study.online = read_online(*online);
   study.model = std::move(system.model);
   study.nominal = std::move(system.nominal);
   study.modes = std::move(system.modes);

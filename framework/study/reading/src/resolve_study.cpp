@@ -361,10 +361,12 @@ std::string resolve(const Study& study, const Written& written,
       written.formulas ? to_json(study.model, *written.formulas, registry) : to_json(study.model);
   add_labels(root["system"], study.labels);
   add_modes(root["system"], study.model.U, study.nominal, written.modes);
+  const bool streamed = std::any_of(study.pipelines.begin(), study.pipelines.end(),
+                                    [](const PipelineSpec& p) { return !p.design(); });
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
-    const bool streamed = std::any_of(study.pipelines.begin(), study.pipelines.end(),
-                                      [](const PipelineSpec& p) { return !p.design(); });
-    root["data"]["simulate"] = to_json(*simulate, study.model.linear, streamed, written, registry);
+    if (study.has_data || !streamed)
+      root["data"]["simulate"] =
+          to_json(*simulate, study.model.linear, streamed, written, registry);
   } else {
     root["data"]["csv"] = to_json(std::get<CsvSpec>(study.data), written.csv_file);
   }
@@ -377,6 +379,7 @@ std::string resolve(const Study& study, const Written& written,
       pipeline[kind] = to_json(*component, kind, registry);
     if (const EstimationSpec* const estimation = spec.estimation())
       add_options(pipeline, *estimation);
+    if (spec.max_programs) pipeline["max_programs"] = *spec.max_programs;
     root["pipelines"].push_back(std::move(pipeline));
   }
   root["metrics"] = Json::array();

@@ -265,19 +265,23 @@ Json definitions(const Registry& registry) {
                         {"in", described(count, "so many samples that follow each other")}},
                        {"most", "in"}),
                 "outputs that miss the prediction are left out");
-  Json pipeline = object({{"name", described(text(200), "unique; the backend's name by default")},
-                          {"backend", reference("backend")},
-                          {"observer", reference("observer")},
-                          {"on_empty", on_empty},
-                          {"restart_set", described(reference("set"),
-                                                    "holds the state where the "
-                                                    "observer begins anew; the whole space by "
-                                                    "default")},
-                          {"on_not_enclosed", on_not_enclosed},
-                          {"outliers", outliers},
-                          {"diagnoser", reference("diagnoser")},
-                          {"designer", reference("designer")}},
-                         {"backend"});
+  Json pipeline = object(
+      {{"name", described(text(200), "unique; the backend's name by default")},
+       {"backend", reference("backend")},
+       {"observer", reference("observer")},
+       {"on_empty", on_empty},
+       {"restart_set", described(reference("set"),
+                                 "holds the state where the "
+                                 "observer begins anew; the whole space by "
+                                 "default")},
+       {"on_not_enclosed", on_not_enclosed},
+       {"outliers", outliers},
+       {"max_programs", described(integer(0, static_cast<std::int64_t>(json::max_integer)),
+                                  "programs that a step begins at most, and each mode of a "
+                                  "bank; what is left open is unknown; no limit by default")},
+       {"diagnoser", reference("diagnoser")},
+       {"designer", reference("designer")}},
+      {"backend"});
   const Json bank_wide{{"anyOf", {{{"required", {"diagnoser"}}}, {{"required", {"designer"}}}}}};
   pipeline["oneOf"] = {{{"required", {"observer"}}}, bank_wide};
   defs["pipeline"] = pipeline;
@@ -349,7 +353,7 @@ Json conditions() {
                           "dropouts", "outliers"})
     refused[key] = false;
   Json streamed = with_simulate(Json::object(), {"steps"});
-  streamed["required"] = {"data"};
+  streamed["anyOf"] = {{{"required", {"data"}}}, {{"required", {"online"}}}};
   Json one_designed{{"properties", {{"pipelines", {{"contains", designer}}}}}};
   Json simulated{{"properties", {{"data", {{"properties", {{"csv", false}}}}}}}};
   return {{{"if", all_designed}, {"then", with_simulate(refused, {})}, {"else", streamed}},

@@ -315,6 +315,7 @@ void Results::end_estimation(const PipelineOutcome& outcome, const MetricValues&
   write_assumptions(results_, outcome, mode_names(study_));
   write_claim(results_, "outside", found.outside_from, found.outside_proven);
   write_time(results_, "violated_at", outcome.violated_at);
+  if (outcome.left_open > 0) results_.member("left_open", outcome.left_open);
   write_inner(results_, found);
   write_growth(results_, found);
   results_.key("answers").begin_object();

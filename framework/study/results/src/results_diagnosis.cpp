@@ -144,6 +144,7 @@ void Results::end_diagnosis(const PipelineOutcome& outcome) {
   write_members(results_, *outcome.diagnosis());
   write_assumptions(results_, outcome, modes_);
   write_time(results_, "violated_at", outcome.violated_at);
+  if (outcome.left_open > 0) results_.member("left_open", outcome.left_open);
   write_error(results_, outcome);
   end_pipeline(outcome, {.diagnosis = diagnosis_fields(outcome)});
 }

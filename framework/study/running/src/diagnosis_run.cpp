@@ -86,7 +86,9 @@ class DiagnosisRun final : public PipelineRun {
     std::vector<JudgedBound> faults;
     guarded([&] {
       check_->step(record);
-      step = std::move(*session_->step(record.sample).diagnosis);
+      SessionStep taken = session_->step(record.sample);
+      outcome_.left_open += taken.left_open;
+      step = std::move(*taken.diagnosis);
       faults =
           fault_score_.step(record.fault, step.diagnosis, record.sample.k < first_other_fault_);
     });

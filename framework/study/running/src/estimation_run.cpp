@@ -129,7 +129,9 @@ class EstimationRun final : public PipelineRun {
     nominal_ = nominal_ && given.mode.value_or(nominal_mode) == nominal_mode;
     seen_.reset();
     guarded([&] {
-      step = std::move(*session_->step(given.sample).estimate);
+      SessionStep taken = session_->step(given.sample);
+      outcome_.left_open += taken.left_open;
+      step = std::move(*taken.estimate);
       count_beginnings(given.sample.k, step);
       tell_contradiction(given, step);
       const Record& record = seen_ ? *seen_ : given;

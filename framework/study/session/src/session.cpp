@@ -11,6 +11,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/interfaces/archive.hpp"
 #include "cordon/registry/build.hpp"
+#include "cordon/solvers/limits.hpp"
 #include "interfaces/sample_check.hpp"
 #include "study/session/diagnosis_timeline.hpp"
 #include "study/text/sealed.hpp"
@@ -103,11 +104,13 @@ class Session::Work {
     check(sample);
     SessionStep step{sample.k, {}, {}};
     ended_ = true;  // unless all goes well
+    const LimitedSolvers limits({{}, spec_.max_programs});
     if (observer_) {
       step.estimate = estimated(sample);
     } else {
       step.diagnosis = diagnosed(sample);
     }
+    step.left_open = limits.left_open();
     ended_ = false;
     last_ = sample.k;
     return step;

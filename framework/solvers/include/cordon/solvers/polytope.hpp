@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "cordon/core/answer.hpp"
 #include "cordon/core/box.hpp"
@@ -73,6 +74,12 @@ class Polytope {
   };
   Generators generators() const;
   Inequalities inequalities() const;
+
+  /// The same as rational numbers, in a text. Read again, all operations give what they gave, in
+  /// the same order. Reading converts both ways, to prove that they are of one set, and throws
+  /// Errc::invalid for any other text.
+  std::string descriptions() const;
+  static Polytope from_descriptions(const std::string& text);
 
   /// In exchange form: lines as they are, and the section that remains as its interval hull, cut by
   /// one constraint with one slack factor per facet that is not one of the hull (a constrained

@@ -266,7 +266,8 @@ struct PipelineOutcome : PipelineTask<EstimationOutcome, DiagnosisOutcome, Desig
   /// A defect: an estimate that the truth has left although all assumptions hold, which is known of
   /// simulated data only (in the nominal mode so far, and not of a Plant), or a true mode excluded.
   std::int64_t violated_at = -1;
-  std::string error = {};  ///< the pipeline stopped with this error; the others go on
+  std::int64_t left_open = 0;  ///< steps with questions that limits of work have left open
+  std::string error = {};      ///< the pipeline stopped with this error; the others go on
   std::optional<Errc> error_code = {};
   StepTimes step_us;
   double wall_s = 0;  ///< wall-clock time of the whole pipeline, data and results included

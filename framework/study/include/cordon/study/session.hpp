@@ -46,6 +46,9 @@ struct SessionStep {
   Index k = 0;  ///< of the sample
   std::optional<EstimateStep> estimate = {};
   std::optional<DiagnosisStep> diagnosis = {};
+  /// Limits of work have left questions to solvers open: bounds may be wider, and answers
+  /// `unknown`.
+  bool left_open = false;
 };
 
 /// A pipeline with an observer or a diagnoser at work. Samples come in order, without steps between

@@ -175,6 +175,8 @@ struct DesignSpec {
 struct PipelineSpec : PipelineTask<EstimationSpec, DiagnosisSpec, DesignSpec> {
   std::string name = {};
   ComponentSpec backend = {};
+  /// That a step may begin at most, and each mode of a bank; what they leave open is `unknown`.
+  std::optional<std::int64_t> max_programs = {};
 };
 
 /// The components of a pipeline beside its backend, under the keys that studies give them:
@@ -230,6 +232,7 @@ struct Study {
   bool continuous = false;  ///< the model was written in continuous time, and is sampled here
   std::variant<SimulateSpec, CsvSpec>
       data;  ///< pipelines with a designer take seed, seeds, noise and start of simulated data
+  bool has_data = false;  ///< the file has them
   std::vector<PipelineSpec> pipelines;
   std::vector<ComponentSpec> metrics;
   OnlineSpec online = {};
@@ -252,8 +255,12 @@ enum class StudyPlugins {
   load     ///< trusted too
 };
 
-/// Must a study have data where its pipelines take samples? Not for what is asked of models alone.
-enum class StudyData { needed, optional };
+/// Must a study have data where its pipelines take samples?
+enum class StudyData {
+  needed,
+  needed_unless_online,  ///< not where it says how samples come on line
+  optional               ///< not for what is asked of models alone
+};
 
 /// Reads, loads plugins from the directories that the study names, as far as `plugins` says, and
 /// then from `path` (the first plugin of a name wins), validates against the registry, and

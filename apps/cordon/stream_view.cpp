@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stream_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "core/text.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+constexpr auto between_pictures = std::chrono::milliseconds(100);
+constexpr std::size_t most_named = 24, bar_width = 30;
+
+/// The first characters of a line, so that it does not run over to the next one.
+std::string cut(const std::string& text, std::size_t columns) {
+  std::size_t at = 0;
+  for (std::size_t shown = 0; at < text.size() && shown < columns; ++shown)
+    at += std::max<std::size_t>(1, detail::utf8_length(std::string_view(text).substr(at)));
+  return text.substr(0, at);
+}
+
+std::size_t width_of(const std::string& text) {
+  std::size_t width = 0;
+  for (std::size_t at = 0; at < text.size(); ++width)
+    at += std::max<std::size_t>(1, detail::utf8_length(std::string_view(text).substr(at)));
+  return width;
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  const std::string shown = cut(text, width);
+  return shown + std::string(width - std::min(width, width_of(shown)), ' ');
+}
+
+/// A text over as many lines as it needs, broken at spaces; the later ones are indented.
+std::vector<std::string> lines_of(const std::string& text, std::size_t columns) {
+  constexpr std::size_t indent = 2;
+  std::vector<std::string> lines(1);
+  std::size_t from = 0;
+  while (from < text.size()) {
+    const std::size_t end = std::min(text.find(' ', from), text.size());
+    const std::string word = text.substr(from, end - from);
+    const std::size_t width = width_of(lines.back());
+    if (width > indent && width + 1 + width_of(word) > columns) lines.emplace_back(indent, ' ');
+    if (width_of(lines.back()) > indent || (lines.size() == 1 && !lines.back().empty()))
+      lines.back() += ' ';
+    lines.back() += word;
+    from = end + 1;
+  }
+  return lines;
+}
+
+bool is_standing_out(const Alarm& alarm) { return alarm.is_active && !alarm.acknowledged; }
+
+}  // namespace
+
+std::optional<TerminalSize> terminal_size() {
+  const char* const kind = std::getenv("TERM");
+  if (isatty(STDOUT_FILENO) != 1 || (kind && std::string_view(kind) == "dumb")) return std::nullopt;
+  winsize size{};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_row == 0 || size.ws_col == 0)
+    return TerminalSize{};
+  return TerminalSize{size.ws_row, size.ws_col};
+}
+
+StreamView::StreamView(const Study& study, const OnlineSession& session,
+                       std::optional<TerminalSize> terminal)
+    : title_(detail::printable(study.title + ": " + session.session().name())),
+      labels_(study.labels),
+      session_(session),
+      terminal_(terminal),
+      paint_(stdout) {}
+
+std::string StreamView::show(const Taken& taken) {
+  std::string lines;
+  const auto tell = [&](const std::string& text) {
+    if (!terminal_) lines += text + "\n";
+  };
+  if (taken.how != Taken::How::taken) tell(taken.said);
+  for (const TakenStep& step : taken.steps) {
+    k_ = step.k;
+    left_open_ += step.left_open;
+    if (step.estimate && step.estimate->is_last) {
+      hull_ = step.estimate->hull;
+      is_empty_ = step.estimate->estimate.consistent == Answer::no;
+    }
+    if (step.diagnosis) diagnosis_ = step.diagnosis->diagnosis;
+    tell(text_of(step));
+    lines += show(step.alarms);
+  }
+  return terminal_ ? drawn_if_due() : lines;
+}
+
+std::string StreamView::show(const std::vector<AlarmChange>& changes) {
+  std::string lines;
+  for (const AlarmChange& change : changes) {
+    news_ = fmt::format("alarm {} at {}", to_string(change.what), time_text(labels_, change.k));
+    if (!terminal_) lines += text_of(change) + "\n";
+  }
+  return lines;
+}
+
+std::string StreamView::show(const Error& error, std::int64_t line) {
+  ++refused_;
+  news_ = fmt::format("line {} is refused: {}", line, detail::printable(error.what()));
+  return terminal_ ? drawn_if_due() : news_ + "\n";
+}
+
+std::string StreamView::begin_anew() {
+  hull_ = {};
+  diagnosis_.reset();
+  is_empty_ = false;
+  news_ = "begun anew";
+  return terminal_ ? "" : news_ + "\n";
+}
+
+std::string StreamView::last() { return terminal_ && k_ >= 0 ? drawn() : ""; }
+
+std::string StreamView::text_of(const TakenStep& step) const {
+  std::string text = time_text(labels_, step.k);
+  if (const auto& found = step.diagnosis) {
+    const Diagnosis& diagnosis = found->diagnosis;
+    text += fmt::format("  {}", to_string(diagnosis.decision));
+    const auto& names = session_.session().modes();
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      const bool is_it = diagnosis.mode == static_cast<Index>(j);
+      if (diagnosis.mode < 0 ? diagnosis.modes[j].candidate : is_it)
+        text += "  " + detail::printable(names[j]);
+    }
+  } else if (!step.estimate->is_last) {
+    text += "  no estimate yet";
+  } else if (step.estimate->estimate.consistent == Answer::no) {
+    text += "  proven empty";
+  } else {
+    const Box& hull = step.estimate->hull;
+    for (Index i = 0; i < hull.dim(); ++i)
+      text +=
+          fmt::format("  {} [{:.4g}, {:.4g}]", detail::printable(label_of(labels_.states, "x", i)),
+                      hull.lower[i], hull.upper[i]);
+  }
+  return step.left_open ? text + "  (questions left open)" : text;
+}
+
+std::string StreamView::text_of(const AlarmChange& change) const {
+  return fmt::format("alarm {} at {}: {}", to_string(change.what), time_text(labels_, change.k),
+                     detail::printable(change.alarm.text));
+}
+
+/// Where the interval lies among all bounds so far.
+std::string StreamView::bar(Index i, double lower, double upper) const {
+  const double from = seen_.lower[i], width = seen_.upper[i] - from;
+  const auto at = [&](double x) {
+    const double share = width > 0 ? (x - from) / width : 0.5;
+    return static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * (bar_width - 1));
+  };
+  std::string text(bar_width, ' ');
+  const std::size_t first = at(lower), end = std::max(at(upper), first);
+  for (std::size_t j = first; j <= end; ++j) text[j] = '#';
+  return "|" + text + "|";
+}
+
+StreamView::Lines StreamView::bounds() {
+  if (is_empty_) return {{"proven empty: no state explains the samples", Look::alarm}};
+  Box hull = hull_;
+  if (diagnosis_ && diagnosis_->estimate) {
+    try {
+      hull = diagnosis_->estimate->set->interval_hull();
+    } catch (const Error&) {  // there is no picture of it
+    }
+  }
+  const Index n = hull.dim();
+  if (seen_.dim() != n) seen_ = {Vector::Constant(n, HUGE_VAL), Vector::Constant(n, -HUGE_VAL)};
+  Lines lines;
+  for (Index i = 0; i < n; ++i) {
+    for (const double bound : {hull.lower[i], hull.upper[i]}) {
+      if (!std::isfinite(bound)) continue;
+      seen_.lower[i] = std::min(seen_.lower[i], bound);
+      seen_.upper[i] = std::max(seen_.upper[i], bound);
+    }
+    const std::string name = detail::printable(label_of(labels_.states, "x", i));
+    lines.push_back(
+        {fmt::format("{} {:>10.4g} {} {:<10.4g}", padded(name, most_named), hull.lower[i],
+                     bar(i, hull.lower[i], hull.upper[i]), hull.upper[i])});
+  }
+  return lines;
+}
+
+StreamView::Lines StreamView::modes() const {
+  if (!diagnosis_) return {};
+  Lines lines;
+  const auto& names = session_.session().modes();
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    const bool is_it = diagnosis_->mode == static_cast<Index>(j),
+               is_possible = diagnosis_->modes[j].candidate;
+    const char* const said = is_it && is_possible ? "monitored"
+                             : is_possible        ? "possible"
+                                                  : "excluded";
+    lines.push_back(
+        {padded(detail::printable(names[j]), most_named) + " " + said, !is_it   ? Look::plain
+                                                                       : j == 0 ? Look::good
+                                                                                : Look::warning});
+  }
+  if (diagnosis_->decision == Decision::unknown_fault)
+    lines.push_back({"a fault that the bank does not have", Look::alarm});
+  return lines;
+}
+
+StreamView::Lines StreamView::folded(const std::string& text, Look look) const {
+  Lines lines;
+  for (const std::string& line : lines_of(text, terminal_->columns - 1))
+    lines.push_back({line, look});
+  return lines;
+}
+
+StreamView::Lines StreamView::alarms() const {
+  if (session_.alarms().empty()) return {{"no alarm stands", Look::good}};
+  Lines lines;
+  for (const Alarm& alarm : session_.alarms()) {
+    const char* const state = is_standing_out(alarm) ? "ALARM"
+                              : alarm.is_active      ? "acknowledged"
+                                                     : "passed, not acknowledged";
+    const Lines more = folded(fmt::format("{}: {}", state, detail::printable(alarm.text)),
+                              is_standing_out(alarm) ? Look::alarm : Look::warning);
+    lines.insert(lines.end(), more.begin(), more.end());
+  }
+  return lines;
+}
+
+std::string StreamView::counts() const {
+  const TakenCounts& taken = session_.counts();
+  std::string text = count(taken.taken + taken.filled, "sample");
+  const auto add = [&](std::int64_t number, const char* what) {
+    if (number > 0) text += fmt::format(", {} {}", number, what);
+  };
+  add(taken.filled_steps, "times filled");
+  add(taken.corrected, "corrected");
+  add(taken.late, "late");
+  add(taken.repeated, "repeated");
+  add(refused_, "refused");
+  add(left_open_, "with questions left open");
+  return text;
+}
+
+std::string StreamView::drawn_if_due() {
+  const auto now = std::chrono::steady_clock::now();
+  if (height_ > 0 && now - drawn_at_ < between_pictures) return "";
+  drawn_at_ = now;
+  terminal_ = terminal_size().value_or(*terminal_);
+  return drawn();
+}
+
+std::string StreamView::painted(const Line& line) const {
+  const std::string text = cut(line.text, terminal_->columns - 1);
+  switch (line.look) {
+    case Look::bold:
+      return paint_.bold(text);
+    case Look::good:
+      return paint_.green(text);
+    case Look::warning:
+      return paint_.yellow(text);
+    case Look::alarm:
+      return paint_.red(text);
+    case Look::plain:
+      break;
+  }
+  return text;
+}
+
+/// Over the picture before; at most as high as the terminal, so that the cursor finds back.
+std::string StreamView::drawn() {
+  Lines lines{{title_ + "  " + time_text(labels_, k_), Look::bold}};
+  const auto append = [](Lines& some, const Lines& more) {
+    some.insert(some.end(), more.begin(), more.end());
+  };
+  Lines below = alarms();
+  if (!news_.empty()) append(below, folded("last: " + news_, Look::plain));
+  below.push_back({counts()});
+  append(lines, modes());
+  append(lines, bounds());
+  const std::size_t room = std::max<std::size_t>(terminal_->rows, 2) - 1;
+  const auto shorten = [](Lines& some, std::size_t most) {
+    if (some.size() <= most) return;
+    const std::size_t left = some.size() - most + 1;
+    some.resize(std::max<std::size_t>(most, 1) - 1);
+    if (most > 0) some.push_back({fmt::format("… and {} lines more", left)});
+  };
+  shorten(below, room / 2);
+  shorten(lines, room - below.size());
+  append(lines, below);
+  std::string text = height_ > 0 ? fmt::format("\x1b[{}A\r", height_) : "";
+  for (std::size_t i = 0; i < lines.size(); ++i)  // what is left of the picture before is erased
+    text += painted(lines[i]) + (i + 1 < lines.size() ? "\x1b[K\n" : "\x1b[J\n");
+  height_ = lines.size();
+  return text;
+}
+
+}  // namespace cordon::apps
