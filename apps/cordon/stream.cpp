@@ -84,6 +84,9 @@ std::string every_problem(const std::string& text) {
 CORDON_COMMAND(stream) {
   CLI::App* command = app.add_subcommand(
       "stream", "Take samples from standard input, one line each, and answer each with a line");
+  command->footer(
+      "SIGINT and SIGTERM end the stream after the sample at hand, as the end of its input does, "
+      "with exit code 0.");
   const auto arguments = std::make_shared<StreamArguments>();
   command->add_option("STUDY", arguments->study, "Study file (JSON); it needs no data")
       ->required()
@@ -103,7 +106,7 @@ CORDON_COMMAND(stream) {
                    "Keep the state in this file, and go on from it if it is there")
       ->check(CLI::Validator(path_problem, "", ""))
       ->option_text("FILE");
-  command->add_option("--every", arguments->every, "Samples between checkpoints [100]")
+  command->add_option("--every", arguments->every, "Lines with samples between checkpoints [100]")
       ->check(CLI::Validator(every_problem, "", ""))
       ->option_text("N")
       ->needs("--checkpoint");
@@ -129,7 +132,7 @@ CORDON_COMMAND(stream) {
   command
       ->add_option("--record", arguments->record,
                    "Keep the samples in this directory, and at the end the results of a run over "
-                   "them")
+                   "them; not with --checkpoint")
       ->check(CLI::Validator(path_problem, "", ""))
       ->option_text("DIR")
       ->excludes("--checkpoint");

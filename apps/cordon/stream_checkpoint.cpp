@@ -19,8 +19,11 @@ void serialize(CheckpointState& state, Archive& archive) {
 
 }  // namespace
 
-std::optional<CheckpointState> Checkpoint::read() const {
+std::optional<CheckpointState> Checkpoint::read() {
   if (!detail::is_there(file_)) return std::nullopt;
+  do {
+    lock_.take(file_);
+  } while (!lock_.holds(file_));  // replaced meanwhile
   const std::string text = json::read_file(file_.string());
   try {
     CheckpointState state;
@@ -34,16 +37,20 @@ std::optional<CheckpointState> Checkpoint::read() const {
   }
 }
 
-void Checkpoint::write(CheckpointState state) const {
+void Checkpoint::write(CheckpointState state) {
+  if (detail::is_there(file_) && !lock_.holds(file_))
+    throw Error(Errc::io, file_.string() + ": another stream has written it");
   Archive archive(nullptr);
   serialize(state, archive);
   const std::filesystem::path beside = file_.string() + ".new";
+  FileLock next;
   std::error_code ignored;
   std::filesystem::remove(beside, ignored);
   try {
     detail::OutputFile out(beside);
     out.write(detail::sealed(name_of_file, archive.bytes()));
     out.close();
+    next.take(beside);
   } catch (const Error&) {
     std::filesystem::remove(beside, ignored);
     throw;
@@ -51,6 +58,7 @@ void Checkpoint::write(CheckpointState state) const {
   std::error_code failure;
   std::filesystem::rename(beside, file_, failure);
   if (failure) throw Error(Errc::io, file_.string() + ": " + failure.message());
+  lock_.swap(next);
   detail::sync_names(std::filesystem::absolute(file_).parent_path());
 }
 

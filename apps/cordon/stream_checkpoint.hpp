@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "file_lock.hpp"
+
 namespace cordon::apps {
 
 struct CheckpointState {
@@ -19,14 +21,16 @@ class Checkpoint {
  public:
   explicit Checkpoint(std::filesystem::path file) : file_(std::move(file)) {}
 
-  /// Nothing: there is no file. Throws InputError for one that is no checkpoint, or is damaged.
-  std::optional<CheckpointState> read() const;
+  /// Nothing: there is no file. Throws InputError for one that is no checkpoint, is damaged, or
+  /// belongs to another stream that is at work; from now on it belongs to this one.
+  std::optional<CheckpointState> read();
   /// In place of the one before, which stays if this one cannot be written: Errc::io. It is on the
   /// disk afterwards.
-  void write(CheckpointState state) const;
+  void write(CheckpointState state);
 
  private:
   std::filesystem::path file_;
+  FileLock lock_;
 };
 
 }  // namespace cordon::apps

@@ -71,18 +71,36 @@ std::string line_of(Request request, const std::vector<AlarmChange>& alarms) {
   return line.text();
 }
 
-std::string error_line(const Error& error, std::int64_t number) {
-  std::string what = error.what();
-  if (const auto* input = dynamic_cast<const InputError*>(&error)) {
-    what.clear();
-    for (const Diagnostic& problem : input->diagnostics()) {
-      if (!what.empty()) what += "; ";
-      what += (problem.pointer.empty() ? "" : problem.pointer + ": ") + problem.message;
-      if (!problem.suggestion.empty()) what += " (" + problem.suggestion + ")";
-    }
+std::string error_text(const Error& error) {
+  const auto* const input = dynamic_cast<const InputError*>(&error);
+  if (!input) return error.what();
+  std::string text;
+  for (const Diagnostic& problem : input->diagnostics()) {
+    if (!text.empty()) text += "; ";
+    text += (problem.pointer.empty() ? "" : problem.pointer + ": ") + problem.message;
+    if (!problem.suggestion.empty()) text += " (" + problem.suggestion + ")";
   }
+  return text;
+}
+
+std::string counts_text(const TakenCounts& counts, std::int64_t refused) {
+  std::string text;
+  const auto add = [&](std::int64_t number, const char* what) {
+    if (number > 0) text += fmt::format(", {} {}", number, what);
+  };
+  add(refused, "refused");
+  if (counts.filled_steps > 0)
+    text +=
+        fmt::format(", {} time{} filled", counts.filled_steps, counts.filled_steps == 1 ? "" : "s");
+  add(counts.corrected, "corrected");
+  add(counts.late, "late");
+  add(counts.repeated, "repeated");
+  return text;
+}
+
+std::string error_line(const Error& error, std::int64_t number) {
   Line line;
-  line.json().member("error", what);
+  line.json().member("error", error_text(error));
   if (number > 0) line.json().member("line", number);
   return line.text();
 }

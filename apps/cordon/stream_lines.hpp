@@ -16,6 +16,10 @@ std::string line_of(const TakenStep& step, const Session& session, bool with_set
 std::string line_of(const Taken& taken, std::int64_t line);
 /// Alarms that change by a request.
 std::string line_of(Request request, const std::vector<AlarmChange>& alarms);
+/// Everything that is wrong, on one line.
+std::string error_text(const Error& error);
+/// ", 2 refused, 3 filled": of samples that were not simply the next ones; "" where all were.
+std::string counts_text(const TakenCounts& counts, std::int64_t refused);
 /// What is wrong with a line; 0: with no line.
 std::string error_line(const Error& error, std::int64_t line);
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "cordon/core/error.hpp"
+#include "file_lock.hpp"
 #include "study/text/json_writer.hpp"
 #include "study/text/publish.hpp"
 
@@ -22,15 +23,39 @@ std::string head_of(const std::string& pipeline) {
   return "{\"cordon_log\": 1, \"pipeline\": " + detail::json_string(pipeline) + "}";
 }
 
+/// Does it begin with this line, and does a line end where it is to be cut?
+bool is_of(const std::filesystem::path& file, const std::string& head, std::int64_t keep) {
+  std::ifstream in(file, std::ios::binary);
+  std::string first;
+  std::error_code failure;
+  const auto size = static_cast<std::int64_t>(std::filesystem::file_size(file, failure));
+  if (keep == 0 || failure || size < keep) return true;  // told elsewhere
+  if (!std::getline(in, first) || first + "\n" != head) return false;
+  char last = 0;
+  return in.seekg(keep - 1) && in.get(last) && last == '\n';
+}
+
 }  // namespace
 
 StreamLog::StreamLog(std::filesystem::path file, const std::string& pipeline, std::int64_t keep)
     : file_(std::move(file)) {
-  if (keep == 0 && detail::is_there(file_)) {
+  const std::string head = head_of(pipeline) + "\n";
+  if (detail::is_there(file_) && !is_of(file_, head, keep)) {
+    throw InputError(file_.string(), {{"", "is not the log that the checkpoint was written with",
+                                       "name the log that belongs to it"}});
+  }
+  if (keep == 0 && detail::is_there(file_) && std::filesystem::file_size(file_) > head.size()) {
     throw InputError(file_.string(), {{"", "exists already",
-                                       "name another file for the log, or move this one away"}});
+                                       "name the checkpoint that belongs to it by "
+                                       "\"--checkpoint\", or move it away to begin anew"}});
   }
   descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  try {
+    if (descriptor_ >= 0) lock(descriptor_, file_);
+  } catch (const Error&) {
+    ::close(descriptor_);
+    throw;
+  }
   const bool is_long_enough =
       descriptor_ >= 0 && (keep == 0 || ::lseek(descriptor_, 0, SEEK_END) >= keep);
   if (descriptor_ >= 0 && !is_long_enough) {
@@ -41,7 +66,7 @@ StreamLog::StreamLog(std::filesystem::path file, const std::string& pipeline, st
   if (descriptor_ < 0 || ::ftruncate(descriptor_, keep) != 0)
     throw Error(Errc::io, fmt::format("{}: {}", file_.string(), std::strerror(errno)));
   bytes_ = keep;
-  if (keep == 0) write(head_of(pipeline) + "\n");
+  if (keep == 0) write(head);
 }
 
 StreamLog::~StreamLog() {

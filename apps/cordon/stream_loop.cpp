@@ -26,7 +26,10 @@ StreamLoop::StreamLoop(const Study& study, const Registry& registry,
     : arguments_(arguments),
       session_(study, registry, arguments.pipeline),
       lines_(study),
-      input_(STDIN_FILENO, stop),
+      input_(STDIN_FILENO, stop,
+             [this] {
+               if (view_) output_.write(view_->idle());
+             }),
       output_(STDOUT_FILENO, stop),
       checkpoint_(arguments.checkpoint) {
   session_.prove_hulls(arguments.sets);
@@ -38,6 +41,11 @@ StreamLoop::StreamLoop(const Study& study, const Registry& registry,
 
 bool StreamLoop::restore() {
   if (arguments_.checkpoint.empty()) return true;
+  if (!arguments_.log.empty() &&
+      std::filesystem::absolute(arguments_.log).lexically_normal() ==
+          std::filesystem::absolute(arguments_.checkpoint).lexically_normal())
+    throw InputError(arguments_.log.string(),
+                     {{"", "is named as log and as checkpoint", "give each a file of its own"}});
   const std::optional<CheckpointState> state = checkpoint_.read();
   if (state && (state->log_bytes > 0) != !arguments_.log.empty()) {
     throw InputError(arguments_.checkpoint.string(),
@@ -48,8 +56,18 @@ bool StreamLoop::restore() {
                                             : "leave \"--log\" out, or begin anew"}});
   }
   if (state) {
-    session_.restore(state->session);
+    try {
+      session_.restore(state->session);
+    } catch (const Error& error) {
+      throw InputError(arguments_.checkpoint.string(),
+                       {{"",
+                         std::string("is of another pipeline, study, \"online\" section or version "
+                                     "of Cordon: ") +
+                             error.what(),
+                         "name another file, or move this one and its log away to begin anew"}});
+    }
     line_ = state->lines;
+    restored_ = true;
   }
   if (!arguments_.log.empty())
     log_.emplace(arguments_.log, session_.session().name(), state ? state->log_bytes : 0);
@@ -68,17 +86,27 @@ void StreamLoop::run() {
   if (!restore()) return;
   if (!arguments_.log.empty() && !log_) log_.emplace(arguments_.log, session_.session().name(), 0);
   const Clock::time_point begin = Clock::now();
-  std::string line;
-  while (replayed_ ? replayed_->next(line) : input_.next(line)) {
-    ++line_;
-    if (!answer(line)) break;
-    if (!arguments_.checkpoint.empty() && since_checkpoint_ >= arguments_.every) save();
+  try {
+    answer_all();
+  } catch (...) {
+    keep_record([&] { record_->finish(); });
+    throw;
   }
   if (view_) output_.write(view_->last());
   wall_s_ = std::chrono::duration<double>(Clock::now() - begin).count();
-  if (!arguments_.checkpoint.empty()) save();
   if (replayed_) complaints_ = replayed_->differences();
   keep_record([&] { record_->finish(); });
+}
+
+void StreamLoop::answer_all() {
+  const bool keeps = !arguments_.checkpoint.empty();
+  std::string line;
+  while (replayed_ ? replayed_->next(line) : input_.next(line)) {
+    ++line_;
+    if (!answer(line)) return;  // nobody has read it: who goes on answers this line again
+    if (keeps && since_checkpoint_ >= arguments_.every) save();
+  }
+  if (keeps) save();
 }
 
 template <class Work>
@@ -118,8 +146,16 @@ bool StreamLoop::answer(const std::string& line) {
   const Clock::time_point begin = Clock::now();
   std::string text;
   try {
+    if (!replayed_ && !input_.was_whole() && !line.starts_with('{'))
+      throw Error(Errc::invalid, "the last line has no end: it may be cut off");
     const GivenLine given = lines_.read(line);
-    if (!given.sample && !given.request) return true;
+    if (!given.sample && !given.request) {
+      const bool is_header = line.find_first_not_of(" \t\r") != std::string::npos;
+      if (restored_ && is_header) --line_;  // it came again, and was counted before
+      restored_ = restored_ && !is_header;
+      return true;
+    }
+    restored_ = false;
     text = answer_to(given);
     if (given.sample) ++since_checkpoint_;
   } catch (const Error& error) {
@@ -189,17 +225,13 @@ std::string StreamLoop::summary() const {
   const auto add = [&](std::int64_t number, const char* what) {
     if (number > 0) text += fmt::format(", {} {}", number, what);
   };
-  add(refused_, "refused");
-  add(counts.filled_steps, "times filled");
-  add(counts.corrected, "corrected");
-  add(counts.late, "late");
-  add(counts.repeated, "repeated");
-  add(left_open_, "steps with questions that limits of work have left open");
+  text += counts_text(counts, refused_);
+  add(left_open_, "with questions that limits of work have left open");
   add(unwritten_, "not written");
   const std::size_t alarms = session_.alarms().size();
   if (alarms > 0) text += fmt::format(", {} alarm{}", alarms, alarms == 1 ? " stands" : "s stand");
-  if (replayed_) text += fmt::format(", {} alarm changes as in the log", replayed_->agreed());
-  if (samples == 0) return text;
+  if (replayed_) text += ", " + count(replayed_->agreed(), "alarm change") + " as in the log";
+  if (samples == 0 || !(latency_us_.largest() > 0)) return text;
   return text + fmt::format(
                     "\nline to line: median {:.1f} µs, 99 % {:.1f} µs, 99.9 % {:.1f} µs, largest "
                     "{:.1f} µs",

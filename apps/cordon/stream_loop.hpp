@@ -48,6 +48,7 @@ class StreamLoop {
   using Clock = std::chrono::steady_clock;
 
   bool restore();
+  void answer_all();
   /// False: nobody reads on, or a signal came.
   bool answer(const std::string& line);
   std::string answer_to(const GivenLine& given);
@@ -76,6 +77,7 @@ class StreamLoop {
   detail::Quantiles latency_us_;
   std::int64_t line_ = 0, refused_ = 0, since_checkpoint_ = 0, unwritten_ = 0, left_open_ = 0;
   std::vector<std::string> complaints_;
+  bool restored_ = false;  ///< and no line has come since
   double wall_s_ = 0;
 };
 

@@ -51,7 +51,7 @@ StreamRecord::StreamRecord(std::filesystem::path directory, const Study& study,
                            const std::string& pipeline)
     : directory_(std::move(directory)),
       study_(directory_ / "recorded.json"),
-      most_waiting_(static_cast<std::size_t>(study.online.lag)) {
+      most_waiting_(static_cast<std::size_t>(study.online.lag) + 1) {
   if (detail::is_there(study_) || detail::is_there(directory_ / "recorded.csv"))
     throw InputError(directory_.string(), {{"", "holds a record already",
                                             "name another directory, or remove this one"}});
@@ -84,6 +84,7 @@ void StreamRecord::take(const Sample& sample) {
   waiting_.push_back(sample);
   if (waiting_.size() <= most_waiting_) return;
   write_row(waiting_.front());
+  file_->flush();  // what was written outlives a kill
   waiting_.pop_front();
 }
 
@@ -94,6 +95,7 @@ void StreamRecord::write_row(const Sample& sample) {
       row += (std::isnan(value) ? "" : detail::to_text(value)) + ",";
     }
   }
+  if (row == ",") row = "nan,";  // of an output alone, which is missing: no blank line
   row.back() = '\n';
   file_->write(row);
 }

@@ -11,13 +11,15 @@
 #include <fmt/format.h>
 
 #include "core/text.hpp"
+#include "stream_lines.hpp"
 
 namespace cordon::apps {
 
 namespace {
 
 constexpr auto between_pictures = std::chrono::milliseconds(100);
-constexpr std::size_t most_named = 24, bar_width = 30;
+constexpr auto silent_from = std::chrono::seconds(2);
+constexpr std::size_t most_named = 24, least_bar = 8, most_bar = 30;
 
 /// The first characters of a line, so that it does not run over to the next one.
 std::string cut(const std::string& text, std::size_t columns) {
@@ -83,15 +85,16 @@ std::string StreamView::show(const Taken& taken) {
   const auto tell = [&](const std::string& text) {
     if (!terminal_) lines += text + "\n";
   };
+  taken_at_ = std::chrono::steady_clock::now();
   if (taken.how != Taken::How::taken) tell(taken.said);
   for (const TakenStep& step : taken.steps) {
     k_ = step.k;
     left_open_ += step.left_open;
     if (step.estimate && step.estimate->is_last) {
-      hull_ = step.estimate->hull;
+      if (!step.estimate->hull.is_empty()) take_hull(step.estimate->hull);
       is_empty_ = step.estimate->estimate.consistent == Answer::no;
     }
-    if (step.diagnosis) diagnosis_ = step.diagnosis->diagnosis;
+    if (step.diagnosis) take_diagnosis(*step.diagnosis);
     tell(text_of(step));
     lines += show(step.alarms);
   }
@@ -104,21 +107,36 @@ std::string StreamView::show(const std::vector<AlarmChange>& changes) {
     news_ = fmt::format("alarm {} at {}", to_string(change.what), time_text(labels_, change.k));
     if (!terminal_) lines += text_of(change) + "\n";
   }
+  is_stale_ = is_stale_ || !changes.empty();
   return lines;
 }
 
 std::string StreamView::show(const Error& error, std::int64_t line) {
   ++refused_;
-  news_ = fmt::format("line {} is refused: {}", line, detail::printable(error.what()));
+  news_ = fmt::format("line {} is refused: {}", line, detail::printable(error_text(error)));
   return terminal_ ? drawn_if_due() : news_ + "\n";
 }
 
 std::string StreamView::begin_anew() {
   hull_ = {};
   diagnosis_.reset();
+  excluded_.clear();
   is_empty_ = false;
   news_ = "begun anew";
   return terminal_ ? "" : news_ + "\n";
+}
+
+std::string StreamView::idle() {
+  if (!terminal_) return "";
+  if (is_stale_) return drawn_if_due();
+  const auto now = std::chrono::steady_clock::now();
+  if (!is_silent() || (height_ > 0 && now - drawn_at_ < std::chrono::seconds(1))) return "";
+  drawn_at_ = now;
+  return drawn();
+}
+
+bool StreamView::is_silent() const {
+  return std::chrono::steady_clock::now() - taken_at_ >= silent_from;
 }
 
 std::string StreamView::last() { return terminal_ && k_ >= 0 ? drawn() : ""; }
@@ -153,43 +171,77 @@ std::string StreamView::text_of(const AlarmChange& change) const {
                      detail::printable(change.alarm.text));
 }
 
-/// Where the interval lies among all bounds so far.
-std::string StreamView::bar(Index i, double lower, double upper) const {
-  const double from = seen_.lower[i], width = seen_.upper[i] - from;
+/// Where the interval lies among all bounds so far, between the ends of these.
+std::string StreamView::bar(Index i, std::size_t width) const {
+  const double from = seen_.lower[i], all = seen_.upper[i] / 2 - from / 2;
   const auto at = [&](double x) {
-    const double share = width > 0 ? (x - from) / width : 0.5;
-    return static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * (bar_width - 1));
+    const double share = all > 0 ? (x / 2 - from / 2) / all : 0.5;
+    const double kept = std::isnan(share) ? 0.5 : std::clamp(share, 0.0, 1.0);
+    return static_cast<std::size_t>(kept * static_cast<double>(width - 1));
   };
-  std::string text(bar_width, ' ');
-  const std::size_t first = at(lower), end = std::max(at(upper), first);
+  std::string text(width, ' ');
+  const std::size_t first = at(hull_.lower[i]), end = std::max(at(hull_.upper[i]), first);
   for (std::size_t j = first; j <= end; ++j) text[j] = '#';
-  return "|" + text + "|";
+  return fmt::format("  {:>9.4g} |{}| {:.4g}", from, text, seen_.upper[i]);
 }
 
-StreamView::Lines StreamView::bounds() {
-  if (is_empty_) return {{"proven empty: no state explains the samples", Look::alarm}};
-  Box hull = hull_;
-  if (diagnosis_ && diagnosis_->estimate) {
-    try {
-      hull = diagnosis_->estimate->set->interval_hull();
-    } catch (const Error&) {  // there is no picture of it
-    }
-  }
-  const Index n = hull.dim();
+void StreamView::take_hull(Box hull) {
+  hull_ = std::move(hull);
+  const Index n = hull_.dim();
   if (seen_.dim() != n) seen_ = {Vector::Constant(n, HUGE_VAL), Vector::Constant(n, -HUGE_VAL)};
-  Lines lines;
   for (Index i = 0; i < n; ++i) {
-    for (const double bound : {hull.lower[i], hull.upper[i]}) {
+    for (const double bound : {hull_.lower[i], hull_.upper[i]}) {
       if (!std::isfinite(bound)) continue;
       seen_.lower[i] = std::min(seen_.lower[i], bound);
       seen_.upper[i] = std::max(seen_.upper[i], bound);
     }
-    const std::string name = detail::printable(label_of(labels_.states, "x", i));
-    lines.push_back(
-        {fmt::format("{} {:>10.4g} {} {:<10.4g}", padded(name, most_named), hull.lower[i],
-                     bar(i, hull.lower[i], hull.upper[i]), hull.upper[i])});
+  }
+}
+
+StreamView::Lines StreamView::bounds() {
+  if (is_empty_) return {{"proven empty: no state explains the samples", Look::alarm}};
+  if (diagnosis_ && diagnosis_->estimate) {
+    try {
+      take_hull(diagnosis_->estimate->set->interval_hull());
+    } catch (const Error&) {  // there is no picture of it
+    }
+  }
+  std::vector<std::string> names;
+  std::size_t widest = 0;
+  for (Index i = 0; i < hull_.dim(); ++i) {
+    names.push_back(detail::printable(label_of(labels_.states, "x", i)));
+    widest = std::min(std::max(widest, width_of(names.back())), most_named);
+  }
+  constexpr std::size_t numbers = 2 + 10 + 2 + 10 + 1, ends = 2 + 9 + 3 + 2 + 9;
+  const std::size_t used = widest + numbers + ends + 1,
+                    room = terminal_->columns > used ? terminal_->columns - used : 0;
+  Lines lines;
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    const auto i = static_cast<Index>(j);
+    std::string text = fmt::format("{} [{:>10.4g}, {:>10.4g}]", padded(names[j], widest),
+                                   hull_.lower[i], hull_.upper[i]);
+    if (room >= least_bar && seen_.lower[i] <= seen_.upper[i])
+      text += bar(i, std::min(room, most_bar));
+    lines.push_back({text});
   }
   return lines;
+}
+
+/// A mode stays excluded until it is possible again; what is not possible otherwise, as beside a
+/// mode that was assumed at the start, was not looked at.
+void StreamView::take_diagnosis(const DiagnosisStep& step) {
+  diagnosis_ = step.diagnosis;
+  excluded_.resize(diagnosis_->modes.size());
+  for (const DiagnosisEvent& event : step.events) {
+    const bool excludes = event.what == DiagnosisEvent::Kind::excluded ||
+                          event.what == DiagnosisEvent::Kind::detected;
+    const auto mode = static_cast<std::size_t>(event.mode);
+    if (excludes && event.mode >= 0 && mode < excluded_.size()) excluded_[mode] = true;
+  }
+  for (std::size_t j = 0; j < excluded_.size(); ++j) {
+    if (diagnosis_->modes[j].consistent == Answer::no) excluded_[j] = true;
+    if (diagnosis_->modes[j].candidate) excluded_[j] = false;
+  }
 }
 
 StreamView::Lines StreamView::modes() const {
@@ -199,9 +251,10 @@ StreamView::Lines StreamView::modes() const {
   for (std::size_t j = 0; j < names.size(); ++j) {
     const bool is_it = diagnosis_->mode == static_cast<Index>(j),
                is_possible = diagnosis_->modes[j].candidate;
-    const char* const said = is_it && is_possible ? "monitored"
-                             : is_possible        ? "possible"
-                                                  : "excluded";
+    const char* const said = is_it          ? "monitored"
+                             : is_possible  ? "possible"
+                             : excluded_[j] ? "excluded"
+                                            : "not looked at";
     lines.push_back(
         {padded(detail::printable(names[j]), most_named) + " " + said, !is_it   ? Look::plain
                                                                        : j == 0 ? Look::good
@@ -226,8 +279,10 @@ StreamView::Lines StreamView::alarms() const {
     const char* const state = is_standing_out(alarm) ? "ALARM"
                               : alarm.is_active      ? "acknowledged"
                                                      : "passed, not acknowledged";
-    const Lines more = folded(fmt::format("{}: {}", state, detail::printable(alarm.text)),
-                              is_standing_out(alarm) ? Look::alarm : Look::warning);
+    const Lines more =
+        folded(fmt::format("{}, raised at {}: {}", state, time_text(labels_, alarm.raised_at),
+                           detail::printable(alarm.text)),
+               is_standing_out(alarm) ? Look::alarm : Look::warning);
     lines.insert(lines.end(), more.begin(), more.end());
   }
   return lines;
@@ -235,22 +290,15 @@ StreamView::Lines StreamView::alarms() const {
 
 std::string StreamView::counts() const {
   const TakenCounts& taken = session_.counts();
-  std::string text = count(taken.taken + taken.filled, "sample");
-  const auto add = [&](std::int64_t number, const char* what) {
-    if (number > 0) text += fmt::format(", {} {}", number, what);
-  };
-  add(taken.filled_steps, "times filled");
-  add(taken.corrected, "corrected");
-  add(taken.late, "late");
-  add(taken.repeated, "repeated");
-  add(refused_, "refused");
-  add(left_open_, "with questions left open");
+  std::string text = count(taken.taken + taken.filled, "sample") + counts_text(taken, refused_);
+  if (left_open_ > 0) text += fmt::format(", {} with questions left open", left_open_);
   return text;
 }
 
 std::string StreamView::drawn_if_due() {
   const auto now = std::chrono::steady_clock::now();
-  if (height_ > 0 && now - drawn_at_ < between_pictures) return "";
+  is_stale_ = height_ > 0 && now - drawn_at_ < between_pictures;
+  if (is_stale_) return "";
   drawn_at_ = now;
   terminal_ = terminal_size().value_or(*terminal_);
   return drawn();
@@ -275,7 +323,13 @@ std::string StreamView::painted(const Line& line) const {
 
 /// Over the picture before; at most as high as the terminal, so that the cursor finds back.
 std::string StreamView::drawn() {
-  Lines lines{{title_ + "  " + time_text(labels_, k_), Look::bold}};
+  Lines lines{{(k_ < 0 ? "no sample yet" : time_text(labels_, k_)) + "  " + title_, Look::bold}};
+  if (is_silent())
+    lines.push_back(
+        {fmt::format("no sample for {} s", std::chrono::duration_cast<std::chrono::seconds>(
+                                               std::chrono::steady_clock::now() - taken_at_)
+                                               .count()),
+         Look::warning});
   const auto append = [](Lines& some, const Lines& more) {
     some.insert(some.end(), more.begin(), more.end());
   };

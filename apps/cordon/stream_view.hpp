@@ -29,6 +29,8 @@ class StreamView {
   std::string show(const std::vector<AlarmChange>& changes);  ///< by a request
   std::string show(const Error& error, std::int64_t line);
   std::string begin_anew();
+  /// While no sample comes: how long there has been none.
+  std::string idle();
   /// At the end: the last picture.
   std::string last();
 
@@ -41,6 +43,7 @@ class StreamView {
   using Lines = std::vector<Line>;
 
   std::string drawn_if_due();
+  bool is_silent() const;
   std::string drawn();
   std::string painted(const Line& line) const;
   Lines modes() const;
@@ -50,7 +53,9 @@ class StreamView {
   std::string counts() const;
   std::string text_of(const TakenStep& step) const;
   std::string text_of(const AlarmChange& change) const;
-  std::string bar(Index i, double lower, double upper) const;
+  void take_hull(Box hull);
+  void take_diagnosis(const DiagnosisStep& step);
+  std::string bar(Index i, std::size_t width) const;
 
   std::string title_;
   Labels labels_;
@@ -59,13 +64,15 @@ class StreamView {
   Paint paint_;
   Index k_ = -1;
   Box hull_;  ///< of the last estimate; of dimension 0: there was none
-  bool is_empty_ = false;
+  bool is_empty_ = false, is_stale_ = false;
   std::optional<Diagnosis> diagnosis_;
-  Box seen_;  ///< all finite bounds so far
+  std::vector<bool> excluded_;  ///< modes
+  Box seen_;                    ///< all finite bounds so far; of diagnosers those that were drawn
   std::string news_;
   std::int64_t refused_ = 0, left_open_ = 0;
   std::size_t height_ = 0;  ///< of the picture that stands on the terminal
-  std::chrono::steady_clock::time_point drawn_at_ = {};
+  std::chrono::steady_clock::time_point drawn_at_ = {},
+                                        taken_at_ = std::chrono::steady_clock::now();
 };
 
 /// Of standard output; nothing: it is no terminal, or one that cannot move its cursor (TERM=dumb).

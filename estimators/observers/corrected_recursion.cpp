@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/recycled.hpp"
 
 namespace cordon::estimators {
 
@@ -46,7 +47,7 @@ Enclosure CorrectedRecursion::predicted(const Enclosure& X, const StackStep& ste
   const Matrix spread = effectiveness_.input_spread(step.B, u);
   const Enclosure open =
       effectiveness_.has_open_states() ? effectiveness_.open_states(X, u) : Enclosure{};
-  std::vector<Term> terms;
+  RecycledVector<Term> terms;
   terms.reserve(5);
   terms.push_back({step.Bw, W_});
   if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});

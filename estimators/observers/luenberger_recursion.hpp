@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cordon/core/recycled.hpp"
 #include "cordon/interfaces/archive.hpp"
 #include "cordon/interfaces/backend.hpp"
 #include "cordon/interfaces/model.hpp"
@@ -88,7 +89,7 @@ class LuenbergerRecursion {
   struct Summands {
     Matrix inputs;
     Enclosure parameters, outputs;
-    std::vector<Term> terms;
+    RecycledVector<Term> terms;
     Vector half_widths;  ///< of the sum; no entries: nothing is open
   };
   enum class Target { state, output };

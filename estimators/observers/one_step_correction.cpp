@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/recycled.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
@@ -91,7 +92,7 @@ std::optional<Enclosure> OneStepCorrection::next(const Enclosure& X, VectorIn u,
   if (is_contradicted(X, reach, largest, u, now)) return backend_.empty(state_.X.rows());
   const Vector shift = state_.known(u, now);
   const std::optional<RoundingRoom> room = room_of(reach, largest, shift, u, now);
-  std::vector<Term> terms;
+  RecycledVector<Term> terms;
   terms.reserve(3);
   terms.push_back({state_W_, W_});
   terms.push_back({state_V_, V_});

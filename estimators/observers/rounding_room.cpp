@@ -59,7 +59,7 @@ Thickness Thickness::of_rows(const std::vector<Index>& rows) const {
 RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn terms,
                            const Thickness& thickness)
     : backend_(backend) {
-  std::vector<Index> rows;
+  RecycledVector<Index> rows;
   for (Index i = 0; i < sum.size() && backend.info().rounding == Rounding::nominal; ++i) {
     // NaN, of terms that overflow, is left to the backend's refusal
     if (!(std::abs(sum[i]) >= cancelled * terms[i])) rows.push_back(i);
@@ -73,14 +73,14 @@ RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn ter
 }
 
 RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn terms) : backend_(backend) {
-  std::vector<Index> rows;
+  RecycledVector<Index> rows;
   for (Index i = 0; i < terms.size(); ++i) {
     if (terms[i] > 0) rows.push_back(i);
   }
   make(rows, terms);
 }
 
-void RoundingRoom::make(const std::vector<Index>& rows, VectorIn terms) {
+void RoundingRoom::make(const RecycledVector<Index>& rows, VectorIn terms) {
   columns_ = Matrix::Zero(terms.size(), static_cast<Index>(rows.size()));
   half_widths_ = Vector::Zero(terms.size());
   if (rows.empty()) return;

@@ -58,7 +58,7 @@ class RoundingRoom {
   Enclosure correct(const Enclosure& X, const CorrectionArgs& measurement) const;
 
  private:
-  void make(const std::vector<Index>& rows, VectorIn terms);
+  void make(const RecycledVector<Index>& rows, VectorIn terms);
 
   const SetBackend& backend_;
   Matrix columns_;

@@ -78,7 +78,7 @@ def main():
                     print(line, flush=True)
             if count > given.skip:
                 time.sleep(given.every)
-    except BrokenPipeError:
+    except (BrokenPipeError, KeyboardInterrupt):
         sys.stderr.close()
 
 

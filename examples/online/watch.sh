@@ -9,8 +9,23 @@ watch() {
   "$cordon" stream "$here/three_tanks.json" --pipeline supervision --checkpoint watch.state \
     --log watch.log "$@"
 }
+case " $* " in
+  *" --help "* | *" -h "*) exec python3 "$here/plant.py" --help ;;
+esac
 taken=0
 if [ -e watch.state ]; then
   taken=$(watch --quiet </dev/null | sed -n 's/.*"lines": \([0-9]*\).*/\1/p')
 fi
-python3 "$here/plant.py" --skip "$taken" "$@" | watch
+python3 "$here/plant.py" --skip "$taken" "$@" |
+  "$cordon" stream "$here/three_tanks.json" --pipeline supervision --checkpoint watch.state \
+    --log watch.log &
+stream=$!
+# Who stops this script stops the stream, after the sample at hand.
+trap 'kill -TERM $stream 2>/dev/null' TERM INT
+status=0
+wait $stream || status=$?
+while kill -0 $stream 2>/dev/null; do  # a signal came
+  status=0
+  wait $stream || status=$?
+done
+exit $status

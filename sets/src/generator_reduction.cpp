@@ -10,6 +10,7 @@
 
 #include "basis_reduction.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/recycled.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "nonzero_columns.hpp"
@@ -49,15 +50,16 @@ Matrix sorted_by_size(MatrixIn G, Size size) {
       size == Size::norm_2
           ? norms(G)
           : Vector((G.colwise().lpNorm<1>() - G.colwise().lpNorm<Eigen::Infinity>()).transpose());
-  std::vector<Index> order(static_cast<std::size_t>(G.cols()));
+  RecycledVector<Index> order(static_cast<std::size_t>(G.cols()));
   std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return key[a] > key[b]; });
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return key[a] != key[b] ? key[a] > key[b] : a < b; });
   Matrix sorted(G.rows(), G.cols());
   for (Index k = 0; k < G.cols(); ++k) sorted.col(k) = G.col(order[static_cast<std::size_t>(k)]);
   return sorted;
 }
 
-using Rows = std::vector<Index>;
+using Rows = RecycledVector<Index>;
 
 /// The last of the sorted columns are replaced by a box along the columns of S⁻¹ Q, Q orthogonal, S
 /// = diag(scale).
@@ -66,7 +68,7 @@ struct ReductionBox {
   Index kept = 0;
   Vector scale;
   Matrix Q;
-  std::vector<Rows> groups;  ///< of rows (and columns of Q) that Q mixes
+  RecycledVector<Rows> groups;  ///< of rows (and columns of Q) that Q mixes
 
   Index dim() const { return sorted.rows(); }
   Matrix replaced() const { return sorted.rightCols(sorted.cols() - kept); }
@@ -107,13 +109,14 @@ Matrix boxed(const Matrix& sorted, Index max_generators) {
 /// within each group alone: a row of smaller numbers is as often rounding noise
 /// as it is a small unit, and a rotation that mixes both widens the larger one by what is
 /// noise, or swamps the smaller one by rounding errors of the larger.
-std::vector<Rows> comparable_rows(MatrixIn G) {
+RecycledVector<Rows> comparable_rows(MatrixIn G) {
   Rows order(static_cast<std::size_t>(G.rows()));
   std::iota(order.begin(), order.end(), Index{0});
   const Vector size =
       G.cols() ? Vector(G.cwiseAbs().rowwise().maxCoeff()) : Vector(Vector::Zero(G.rows()));
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return size[a] > size[b]; });
-  std::vector<Rows> groups;
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return size[a] != size[b] ? size[a] > size[b] : a < b; });
+  RecycledVector<Rows> groups;
   for (const Index i : order) {
     if (groups.empty() || size[i] <= std::ldexp(size[groups.back().front()], -16))
       groups.emplace_back();

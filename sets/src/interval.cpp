@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "cordon/core/recycled.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "require.hpp"
 
@@ -111,7 +112,7 @@ class RowContractor {
                                                                          : Progress::none;
   }
 
-  std::vector<Interval> after_;
+  RecycledVector<Interval> after_;
   double off_;
 };
 
@@ -259,7 +260,7 @@ Box contract(const Box& X, MatrixIn C, VectorIn z, MatrixIn T, const Box& V, dou
   require_size(T.rows(), C.rows(), name, "the number of rows of T");
   require_finite(z, name, "z");
   if (X.is_empty() || V.is_empty()) return Box::empty(X.dim());
-  std::vector<Interval> y(static_cast<std::size_t>(C.rows()));
+  RecycledVector<Interval> y(static_cast<std::size_t>(C.rows()));
   Vector size = z.cwiseAbs();  // z - T V cancels where the sets touch
   for (Index i = 0; i < C.rows(); ++i) {
     const Interval noise = image_row(V, T, i);

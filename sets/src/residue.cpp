@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <limits>
-#include <vector>
 
+#include "cordon/core/recycled.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "rows.hpp"
 #include "tracked_form.hpp"
@@ -58,7 +58,7 @@ bool holds_unit_ball(const Rows& H) {
 bool have_own_factors(const LineForm& X, const Terms& terms) {
   const Index n = X.dim(), m = X.constraints();
   Index open = (terms.state.array() > 0).count() + (terms.rows.array() > 0).count();
-  std::vector<bool> covered(static_cast<std::size_t>(n + m), false);
+  RecycledVector<bool> covered(static_cast<std::size_t>(n + m), false);
   for (Index j = X.generators() - 1; j >= 0 && open > 0; --j) {
     Index place = -1, entries = 0;
     for (Index i = 0; i < n && entries < 2; ++i) {

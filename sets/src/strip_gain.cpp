@@ -8,6 +8,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/recycled.hpp"
 #include "cordon/sets/generator_reduction.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "determinant.hpp"
@@ -69,7 +70,7 @@ Vector hull_gain(MatrixIn G, VectorIn rho, double sigma) {
   for (Index j = 0; j < G.cols(); ++j) parts[j] = part_of(G.col(j), rho);
   const double reach = parts.lpNorm<1>(), all = sigma + reach;
   if (sigma <= hyperplane * reach) return segment_gain(G, rho, sigma);
-  std::vector<Break> breaks;
+  RecycledVector<Break> breaks;
   for (Index i = 0; i < G.rows(); ++i) {
     breaks.clear();
     double above = 0, below = 0;  // weights on either side of 0
@@ -101,7 +102,7 @@ Matrix normals(const Matrix& G) {
   Matrix W(n, subset_count(g, n - 1, max_normals));
   Matrix minor(n - 1, n - 1);
   Index column = 0;
-  for_each_subset(g, n - 1, [&](const std::vector<Index>& J) {
+  for_each_subset(g, n - 1, [&](const RecycledVector<Index>& J) {
     for (Index i = 0; i < n; ++i) {
       for (Index k = 0; k < n - 1; ++k) {
         const Index j = J[static_cast<std::size_t>(k)];

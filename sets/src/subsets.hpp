@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <numeric>
-#include <vector>
 
+#include "cordon/core/recycled.hpp"
 #include "cordon/core/types.hpp"
 
 namespace cordon::sets {
@@ -25,7 +25,7 @@ inline Index subset_count(Index g, Index k, Index limit) {
 /// Calls `visit` with every k-subset of {0, …, g-1}, 0 ≤ k ≤ g.
 template <class Visit>
 void for_each_subset(Index g, Index k, Visit visit) {
-  std::vector<Index> subset(static_cast<std::size_t>(k));
+  RecycledVector<Index> subset(static_cast<std::size_t>(k));
   std::iota(subset.begin(), subset.end(), Index{0});
   while (true) {
     visit(subset);

@@ -51,7 +51,7 @@ std::optional<ZonotopeVolume> volume_with_error(const Zonotope& Z, Index max_sub
   const double unit = static_cast<double>(8 * n * n) * std::numeric_limits<double>::epsilon();
   double sum = 0, terms = 0;
   Matrix minor(n, n);
-  for_each_subset(g, n, [&](const std::vector<Index>& columns) {
+  for_each_subset(g, n, [&](const RecycledVector<Index>& columns) {
     double product = 1;
     for (Index k = 0; k < n; ++k) {
       const Index column = columns[static_cast<std::size_t>(k)];

@@ -114,3 +114,149 @@ TEST_CASE("alarms are saved with all that they say") {
   const AlarmChange two{What::raised, 1, other.alarms.standing()[0]};
   CHECK(json_of(one) == json_of(two));
 }
+
+namespace {
+
+/// What x⁺ = .8 x + u, with one output, makes of its inputs; a leak changes the factor to .4.
+struct OneTank {
+  double x = 0;
+  GivenSample next(Index k, double u, bool leaks = false) {
+    GivenSample sample{k, Vector::Constant(1, u), Vector::Constant(1, x)};
+    x = (leaks ? .4 : .8) * x + u;
+    return sample;
+  }
+};
+
+std::string tank_study() {
+  return R"({"cordon": 1,
+    "system": {"type": "lti", "A": [[0.8]], "B": [[1]], "C": [[1]],
+      "X0": {"type": "box", "lower": [-1], "upper": [1]},
+      "W": {"type": "box", "lower": [-0.01], "upper": [0.01]},
+      "V": {"type": "box", "lower": [-0.01], "upper": [0.01]},
+      "modes": [{"name": "leak", "system": {"type": "lti", "A": [[0.4]], "B": [[1]], "C": [[1]],
+        "X0": {"type": "box", "lower": [-1], "upper": [1]},
+        "W": {"type": "box", "lower": [-0.01], "upper": [0.01]},
+        "V": {"type": "box", "lower": [-0.01], "upper": [0.01]}}}]},
+    "pipelines": [
+      {"name": "bank", "backend": "constrained_zonotope",
+       "diagnoser": {"type": "consistency_bank", "observer": {"type": "prediction_correction"},
+         "restart_set": {"type": "box", "lower": [-9], "upper": [9]}}},
+      {"name": "observer", "backend": "constrained_zonotope",
+       "observer": {"type": "prediction_correction"}, "outliers": {"most": 1, "in": 30},
+       "on_empty": "restart", "restart_set": {"type": "box", "lower": [-9], "upper": [9]}}],
+    "online": {"jumps": "fill", "late": "correct", "lag": 20, "repeated": "ignore"}})";
+}
+
+struct OnTank {
+  explicit OnTank(const std::string& pipeline) : session(loaded.study, loaded.registry, pipeline) {}
+  std::vector<AlarmChange> take(const GivenSample& sample) {
+    std::vector<AlarmChange> changes;
+    for (const TakenStep& step : session.take(sample).steps)
+      changes.insert(changes.end(), step.alarms.begin(), step.alarms.end());
+    return changes;
+  }
+  Loaded loaded{tank_study(), Loaded::whole};
+  OnlineSession session;
+  OneTank tank;
+};
+
+GivenSample without_outputs(GivenSample sample) {
+  sample.y.setConstant(std::nan(""));
+  return sample;
+}
+
+}  // namespace
+
+TEST_CASE("an alarm that rests on a filled time says so, and passes when the time is known") {
+  OnTank on("bank");
+  for (Index k = 0; k < 10; ++k) CHECK(on.take(on.tank.next(k, .1)).empty());
+  const GivenSample late = on.tank.next(10, 1);  // another input, which is not sent in time
+  const auto raised = on.take(on.tank.next(11, .1));
+  REQUIRE(raised.size() >= 1);
+  CHECK(raised[0].what == What::raised);
+  CHECK(raised[0].alarm.text.find("the input, which was not sent at k = 10") != std::string::npos);
+  const auto passed = on.take(late);
+  REQUIRE(passed.size() == 1);
+  CHECK(passed[0].what == What::passed);
+  CHECK(passed[0].k == 11);
+  CHECK(on.session.acknowledge()[0].what == What::gone);
+  for (Index k = 12; k < 30; ++k) CHECK(on.take(on.tank.next(k, .1)).empty());
+  std::vector<AlarmChange> fault;  // and a leak raises an alarm of its own
+  for (Index k = 30; k < 40; ++k) {
+    for (const AlarmChange& change : on.take(on.tank.next(k, .1, true))) fault.push_back(change);
+  }
+  REQUIRE(fault.size() == 2);
+  CHECK(fault[0].what == What::raised);
+  CHECK(fault[0].alarm.text.find("not sent") == std::string::npos);
+  CHECK(fault[1].what == What::specified);
+  CHECK(fault[1].alarm.left == 1);
+  CHECK(fault[1].alarm.text.starts_with(fault[0].alarm.text));
+}
+
+TEST_CASE("a fault that no mode explains is specified once") {
+  OnTank on("bank");
+  std::vector<AlarmChange> all;
+  for (Index k = 0; k < 80; ++k) {
+    GivenSample sample = on.tank.next(k, .1);
+    if (k >= 20) sample.y[0] += k % 2 == 0 ? 3 : -3;
+    for (const AlarmChange& change : on.take(sample)) all.push_back(change);
+  }
+  REQUIRE(all.size() >= 1);
+  CHECK(all.size() <= 4);
+  CHECK(all[0].what == What::raised);
+  CHECK(on.session.alarms().size() == 1);
+  CHECK(on.session.alarms()[0].text.starts_with(all[0].alarm.text));
+}
+
+TEST_CASE("late outputs tell no alarm twice, and lose none") {
+  OnTank on("observer");
+  const auto outlier = [](GivenSample sample) {
+    sample.y[0] += 5;
+    return sample;
+  };
+  for (Index k = 0; k < 5; ++k) CHECK(on.take(on.tank.next(k, .1)).empty());
+  const GivenSample lost = on.tank.next(5, .1);
+  CHECK(on.take(without_outputs(lost)).empty());
+  const auto raised = on.take(outlier(on.tank.next(6, .1)));
+  REQUIRE(raised.size() == 1);
+  CHECK(raised[0].alarm.cause == AlarmCause::outlier);
+  const auto passed = on.take(on.tank.next(7, .1));
+  REQUIRE(passed.size() == 1);
+  CHECK(passed[0].what == What::passed);
+  CHECK(on.take(lost).empty());  // k = 6 is taken again
+  CHECK(on.session.acknowledge().size() == 1);
+  CHECK(on.session.alarms().empty());
+  const GivenSample second = on.tank.next(8, .1);
+  on.take(without_outputs(second));
+  on.take(on.tank.next(9, .1));
+  CHECK(on.take(second).empty());  // what was acknowledged is no news
+  CHECK(on.session.alarms().empty());
+  const GivenSample third = on.tank.next(10, .1);
+  CHECK(on.take(without_outputs(third)).empty());
+  CHECK(on.take(on.tank.next(11, .1)).empty());
+  const auto late = on.take(outlier(third));  // beyond what may be left out: a contradiction
+  REQUIRE(!late.empty());
+  CHECK(late[0].what == What::raised);
+  CHECK(late[0].k == 11);
+}
+
+TEST_CASE("what a session has told before it began anew hides nothing") {
+  OnTank on("observer");
+  for (Index k = 0; k < 30; ++k) on.take(on.tank.next(k, .1));
+  GivenSample wrong = on.tank.next(30, .1);
+  wrong.y[0] += 5;
+  CHECK(on.take(wrong).size() == 1);
+  on.take(on.tank.next(31, .1));
+  on.session.acknowledge();
+  on.session.start();
+  on.tank = {};
+  const GivenSample first = on.tank.next(0, .1);
+  on.take(first);
+  GivenSample lost = on.tank.next(1, .1);
+  on.take(without_outputs(lost));
+  on.take(on.tank.next(2, .1));
+  lost.y[0] += 5;
+  const auto late = on.take(lost);
+  REQUIRE(!late.empty());
+  CHECK(late[0].what == What::raised);
+}

@@ -87,9 +87,10 @@ TEST_CASE("a picture shows modes, bounds, alarms and counts") {
       CHECK_MESSAGE(picture.find(what) != std::string::npos, what, picture);
   };
   shows(Watched("bank", TerminalSize{40, 100}, 20).last,
-        {"bank", "k = 19", "healthy", "monitored", "excluded", "leak", "x_1", "|", "#",
+        {"bank", "k = 19", "healthy", "monitored", "leak", "excluded", "x_1", "|", "#",
          "no alarm stands", "20 samples"});
   const std::string picture = Watched("bank", TerminalSize{40, 100}).last;
-  shows(picture, {"bank", "k = 59", "excluded", "ALARM: the samples", "last: alarm", "60 samples"});
+  shows(picture, {"bank", "k = 59", "excluded", "ALARM, raised at k = 31: the samples",
+                  "last: alarm", "60 samples"});
   CHECK(lines_of(picture)[0].find("\x1b[") == 0);  // goes up to the picture before
 }

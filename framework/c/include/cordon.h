@@ -182,8 +182,12 @@ int cordon_result_consistent(const cordon_session* session, int result);
  * or where formulas had no bounded enclosure; else 0. */
 int cordon_result_restarted(const cordon_session* session, int result);
 
+/* 1: limits of work have left questions open, so that bounds may be wider and modes stay; else 0.
+ */
+int cordon_result_left_open(const cordon_session* session, int result);
+
 /* Of a diagnoser: a cordon_decision; the mode that is monitored; and for each mode 1, or 0 for
- * those that are excluded. */
+ * those that are excluded, or not looked at as long as the monitored mode stands. */
 int cordon_result_decision(const cordon_session* session, int result);
 int cordon_result_mode(const cordon_session* session, int result);
 int cordon_result_candidates(const cordon_session* session, int result, int* candidates, int n);

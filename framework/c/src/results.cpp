@@ -56,6 +56,7 @@ std::string json_text(const cordon_session& session, const SessionStep& step) {
   if (step.estimate && step.estimate->restarted) text += R"(, "restarted": true)";
   if (step.estimate && !step.estimate->not_enclosed.empty())
     text += R"(, "not_enclosed": )" + detail::json_string(step.estimate->not_enclosed);
+  if (step.left_open) text += R"(, "left_open": true)";
   return text + "}";
 }
 
@@ -110,6 +111,11 @@ int cordon_result_restarted(const cordon_session* session, int result) {
     return step.estimate && (step.estimate->restarted || !step.estimate->not_enclosed.empty()) ? 1
                                                                                                : 0;
   });
+}
+
+int cordon_result_left_open(const cordon_session* session, int result) {
+  return number(__func__, session, result,
+                [](const SessionStep& step) { return step.left_open ? 1 : 0; });
 }
 
 int cordon_result_decision(const cordon_session* session, int result) {

@@ -40,7 +40,12 @@ void cordon_session::forget() {
 }
 
 void cordon_session::take(const GivenSample& sample) {
+  if (lost)
+    throw Error(Errc::plugin,
+                "there was no memory for what an earlier sample has told; begin anew, or "
+                "go on from a state that was saved");
   Taken taken = online.take(sample);
+  lost = true;  // unless all is kept
   for (TakenStep& step : taken.steps) {
     for (c::Change& change : c::changes_of(std::move(step.alarms)))
       changes.push_back(std::move(change));
@@ -48,6 +53,7 @@ void cordon_session::take(const GivenSample& sample) {
   }
   said = std::move(taken.said);
   how = taken.how;
+  lost = false;
 }
 
 extern "C" {
@@ -84,12 +90,16 @@ int cordon_reset(cordon_session* session) {
     cordon_session& s = c::session_of(session);
     s.forget();
     s.online.start();
+    s.lost = false;
   });
 }
 
 int cordon_save(cordon_session* session, void* buffer, size_t capacity, size_t* size) {
   return c::done(__func__, [&] {
-    const std::string bytes = c::session_of(session).online.save();
+    cordon_session& s = c::session_of(session);
+    if (s.lost)
+      throw Error(Errc::invalid, "what the last sample has told is lost: there is no state");
+    const std::string bytes = s.online.save();
     c::required(size, "size") = bytes.size();
     if (!buffer) return;
     if (capacity < bytes.size())
@@ -105,6 +115,7 @@ int cordon_restore(cordon_session* session, const void* buffer, size_t size) {
     const std::string saved(&c::required(static_cast<const char*>(buffer), "buffer"), size);
     s.forget();
     s.online.restore(saved);
+    s.lost = false;
   });
 }
 

@@ -41,12 +41,13 @@ struct cordon_session {
   void take(const cordon::GivenSample& sample);
   /// No results and no changes.
   void forget();
-  bool has_ended() const { return online.has_ended(); }
+  bool has_ended() const { return online.has_ended() || lost; }
 
   cordon::OnlineSession online;
   cordon::c::Names names;
   std::vector<std::string> warnings;
 
+  bool lost = false;  ///< for want of memory, what a sample has told
   std::optional<cordon::Taken::How> how;
   std::string said;
   std::vector<cordon::c::Result> results;

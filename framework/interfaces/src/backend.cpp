@@ -6,6 +6,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/recycled.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "cordon/core/vectors.hpp"
@@ -95,7 +96,8 @@ Made through_exchange(bool exact_forms, Made made) {
 /// deleter destroys the set, then lets go of the backend.
 Enclosure SetBackend::adopt(Made made, Tightness inputs) const {
   const Set* raw = made.set.release();
-  SetPtr set(raw, [keep = shared_from_this()](const Set* dying) { delete dying; });
+  SetPtr set(
+      raw, [keep = shared_from_this()](const Set* dying) { delete dying; }, Recycling<Set>());
   return {std::move(set), meet(made.tightness, inputs)};
 }
 

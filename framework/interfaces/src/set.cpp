@@ -78,6 +78,15 @@ Index Complexity::count(std::string_view name) const {
   return 0;
 }
 
+void* Set::operator new(std::size_t size) {
+  if (void* const memory = take_memory(size)) return memory;
+  throw std::bad_alloc();
+}
+
+void* Set::operator new(std::size_t size, std::align_val_t alignment) {
+  return ::operator new(size, alignment);
+}
+
 LineForm Set::line_form() const { return do_line_form(); }
 
 View Set::view() const { return do_view(); }

@@ -107,11 +107,15 @@ LinearProgram::Solution LinearProgram::maximize(VectorIn g) {
     // whatever the last direction was.
     control.meth = GLP_DUALP;
     code = glp_simplex(s.problem, &control);
+    if (code == GLP_ETMLIM) LimitedSolvers::tell_left_open(true);
     status = glp_get_status(s.problem);
-    if (!LimitedSolvers::is_over() && (code != 0 || status == GLP_UNDEF || status == GLP_INFEAS)) {
+    if (code != GLP_ETMLIM && !LimitedSolvers::is_over() &&
+        (code != 0 || status == GLP_UNDEF || status == GLP_INFEAS)) {
       glp_std_basis(s.problem);
       control.meth = GLP_PRIMAL;
+      control.tm_lim = LimitedSolvers::milliseconds_left(std::numeric_limits<int>::max());
       code = glp_simplex(s.problem, &control);
+      if (code == GLP_ETMLIM) LimitedSolvers::tell_left_open(true);
       status = glp_get_status(s.problem);
     }
     if (code != 0 || status != GLP_OPT) return;

@@ -79,7 +79,8 @@ void TreeReader::read_sections() {
                           (options_.data == StudyData::needed_unless_online && !online);
   const auto data =
       use.streamed() && needs_data
-          ? root_.need("data", "{\"simulate\": {...}} or {\"csv\": {...}}" + use.reason())
+          ? root_.need("data", "{\"simulate\": {...}} or {\"csv\": {...}}" + use.reason() +
+                                   (online ? "; without data it is for `cordon stream`" : ""))
           : root_.find("data");
   if (data) {
     DataPart part = read_data(*data, system, use, options_.folder, context);

@@ -55,7 +55,7 @@ void DiagnosisTimeline::serialize(Archive& archive) {
   std::size_t untold = untold_.size();
   archive(before_, left_open_, untold);
   // Those that wait are exclusions without faults and estimates, of each mode one at most.
-  if (before_ && untold > before_->candidate.size()) archive.refuse("more events than modes");
+  if (untold > (before_ ? before_->candidate.size() : 0)) archive.refuse("more events than modes");
   untold_.resize(untold);
   for (DiagnosisEvent& event : untold_) detail::serialize(event, archive);
 }

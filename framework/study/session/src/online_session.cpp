@@ -46,6 +46,12 @@ Vector no_outputs(Index count) {
   return Vector::Constant(count, std::numeric_limits<double>::quiet_NaN());
 }
 
+std::vector<const SessionStep*> pointers(const std::vector<TakenStep>& steps) {
+  std::vector<const SessionStep*> found;
+  for (const TakenStep& step : steps) found.push_back(&step);
+  return found;
+}
+
 constexpr const char* saved_online_session = "cordon online session 1";
 
 }  // namespace
@@ -96,6 +102,8 @@ class OnlineSession::Intake {
     ended_ = true;
     session_.start();
     passed_.clear();
+    held_before_.reset();
+    alarms_.begin_anew();
     if (corrects()) before_ = session_.save();
     ended_ = false;
   }
@@ -110,15 +118,17 @@ class OnlineSession::Intake {
 
   void restore(const std::string& saved) {
     Archive archive(nullptr, detail::unsealed(saved_online_session, saved));
-    const Alarms before = alarms_;
+    const Alarms alarms_before = alarms_;
+    const TakenCounts counts_before = counts_;
     try {
       ended_ = true;
       serialize(archive);
       archive.expect_end();
       ended_ = false;
-    } catch (const Error&) {
+    } catch (...) {
       start();
-      alarms_ = before;
+      alarms_ = alarms_before;
+      counts_ = counts_before;
       throw;
     }
   }
@@ -138,12 +148,25 @@ class OnlineSession::Intake {
 
   bool corrects() const { return rules_.late == LateRule::correct; }
 
+  /// The last time whose input was not sent, and is taken for that of the time before.
+  std::optional<Index> held() const {
+    for (auto at = passed_.rbegin(); at != passed_.rend(); ++at) {
+      if (at->is_filled) return at->sample.k;
+    }
+    return held_before_;
+  }
+
   /// Carries out what changes the session; if it ends half way, so does the session.
   template <class Change>
   Taken changing(Change&& change) {
     ended_ = true;
     Taken taken = change();
-    for (TakenStep& step : taken.steps) step.alarms = alarms_.step(step);
+    if (taken.how == Taken::How::corrected) {
+      const std::vector<const SessionStep*> steps = pointers(taken.steps);
+      taken.steps.back().alarms = alarms_.retake(steps, held());
+    } else {
+      for (TakenStep& step : taken.steps) step.alarms = alarms_.step(step, held());
+    }
     ended_ = false;
     return taken;
   }
@@ -151,8 +174,8 @@ class OnlineSession::Intake {
   void serialize(Archive& archive) {
     archive.section(text_of(rules_));
     std::string session = archive.is_reading() ? std::string() : session_.save();
-    archive(session, before_, passed_, counts_.taken, counts_.filled, counts_.corrected,
-            counts_.late, counts_.repeated, counts_.filled_steps);
+    archive(session, before_, passed_, held_before_, counts_.taken, counts_.filled,
+            counts_.corrected, counts_.late, counts_.repeated, counts_.filled_steps);
     alarms_.serialize(archive);
     if (!archive.is_reading()) return;
     session_.restore(session);
@@ -174,8 +197,10 @@ class OnlineSession::Intake {
   void step(const Sample& sample, Taken& taken, bool is_filled = false) {
     taken.steps.push_back({session_.step(sample), sample});
     passed_.push_back({sample, is_filled, std::exchange(before_, {})});
-    const auto most = static_cast<std::size_t>(std::max<std::int64_t>(rules_.lag, 1));
-    if (passed_.size() > most) passed_.pop_front();
+    if (passed_.size() > static_cast<std::size_t>(rules_.lag) + 1) {
+      if (passed_.front().is_filled) held_before_ = passed_.front().sample.k;
+      passed_.pop_front();
+    }
     if (corrects()) before_ = session_.save();
   }
 
@@ -224,9 +249,17 @@ class OnlineSession::Intake {
     if (contradicts(sample, known) || (other_input && !passed_[at].is_filled))
       throw Error(Errc::invalid, time_of(sample.k) + " was taken with other values: it is refused");
     const std::vector<Index> news = news_in(sample, known);
-    if (news.empty() && !other_input) return repeated(sample.k);
+    if (news.empty() && !other_input) return repeated(at);
     if (corrects()) return changing([&] { return corrected(at, sample, news); });
     ++counts_.late;
+    if (other_input) {
+      return {Taken::How::late,
+              time_of(sample.k) +
+                  " has passed: it is left out, although its input is not the one that was taken "
+                  "for it, so that what is said is wrong: begin anew; with \"late\": \"correct\" "
+                  "in /online it would correct the past",
+              {}};
+    }
     return {Taken::How::late,
             time_of(sample.k) +
                 " has passed: it is left out; with \"late\": \"correct\" in /online its outputs "
@@ -234,11 +267,13 @@ class OnlineSession::Intake {
             {}};
   }
 
-  Taken repeated(Index k) {
+  Taken repeated(std::size_t at) {
+    const Index k = passed_[at].sample.k;
     if (rules_.repeated == RepeatRule::refuse)
       throw Error(Errc::invalid, time_of(k) +
                                      " was taken already: it is refused; with "
                                      "\"repeated\": \"ignore\" in /online it is left out");
+    passed_[at].is_filled = false;  // its input was the one that was sent
     ++counts_.repeated;
     return {Taken::How::repeated, time_of(k) + " was taken already: it is left out", {}};
   }
@@ -257,6 +292,8 @@ class OnlineSession::Intake {
     merged.u = sample.u;
     passed_[at].sample = std::move(merged);
     passed_[at].is_filled = false;
+    for (std::size_t i = at + 1; i < passed_.size() && passed_[i].is_filled; ++i)
+      passed_[i].sample.u = sample.u;  // which they have held
     session_.restore(passed_[at].before);
     for (std::size_t i = at; i < passed_.size(); ++i) {
       if (i > at) passed_[i].before = session_.save();
@@ -267,9 +304,10 @@ class OnlineSession::Intake {
     return taken;
   }
 
-  std::deque<Passed> passed_;  ///< the last samples
-  std::string before_;         ///< the session as it is, where late outputs correct
-  bool ended_ = false;         ///< a change has ended half way
+  std::deque<Passed> passed_;         ///< the last samples
+  std::string before_;                ///< the session as it is, where late outputs correct
+  std::optional<Index> held_before_;  ///< as `held`, of the times before these samples
+  bool ended_ = false;                ///< a change has ended half way
 };
 
 OnlineSession::OnlineSession(const Study& study, const Registry& registry,

@@ -81,11 +81,20 @@ class SampleLines::Reader {
     } else {
       read_header(text, problems);
     }
-    if (problems.any()) throw InputError("sample", problems.sorted());
+    if (problems.any()) throw InputError("sample", helped(problems.sorted()));
     return given;
   }
 
  private:
+  /// Programs write NaN for what is missing.
+  static std::vector<Diagnostic> helped(std::vector<Diagnostic> problems) {
+    for (Diagnostic& problem : problems) {
+      if (problem.pointer.starts_with("/y/") && problem.message.starts_with("NaN"))
+        problem.suggestion = "write null for an output that is missing";
+    }
+    return problems;
+  }
+
   /// A column under one of its names: that of the label, of the recorded data, or u_1, y_2.
   struct Column {
     std::vector<std::string> names;

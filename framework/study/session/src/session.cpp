@@ -70,8 +70,8 @@ class Session::Work {
        std::shared_ptr<const SetBackend> backend)
       : spec_(study.pipelines.at(index)),
         model_(study.model),
-        resolved_(study.resolved),
-        backend_(std::move(backend)) {
+        backend_(std::move(backend)),
+        fingerprint_(fingerprint_of(study.resolved, spec_.name)) {
     if (spec_.design())
       throw InputError(study.file.string(),
                        {{"/pipelines/" + std::to_string(index),
@@ -126,10 +126,12 @@ class Session::Work {
   void restore(const std::string& saved) {
     Archive archive(backend_, detail::unsealed(saved_session, saved));
     start();
+    ended_ = true;  // unless all goes well
     try {
       serialize(archive);
       archive.expect_end();
-    } catch (const Error&) {
+      ended_ = false;
+    } catch (...) {
       start();
       throw;
     }
@@ -137,9 +139,9 @@ class Session::Work {
 
   PipelineSpec spec_;
   Model model_;
-  std::string resolved_;  ///< the study, to tell its states from those of others
   std::vector<std::string> modes_;
   std::shared_ptr<const SetBackend> backend_;
+  std::string fingerprint_;  ///< of the study, to tell its states from those of others
   std::shared_ptr<Observer> observer_;
   std::shared_ptr<Diagnoser> diagnoser_;
   bool proves_hulls_ = false;
@@ -214,8 +216,9 @@ class Session::Work {
 
   void serialize(Archive& archive) {
     archive.section(build_info().version);
-    archive.section(fingerprint_of(resolved_, spec_.name));
+    archive.section(fingerprint_);
     archive(last_, told_, was_empty_, timeline_);
+    if (!timeline_.fits(modes_.size())) archive.refuse("a diagnosis of another bank");
     if (observer_) observer_->serialize(archive);
     if (diagnoser_) diagnoser_->serialize(archive);
   }
@@ -247,6 +250,7 @@ void Session::prove_hulls(bool wanted) { work_->proves_hulls_ = wanted; }
 
 void Session::start() { work_->start(); }
 SessionStep Session::step(const Sample& sample) { return work_->step(sample); }
+void Session::step(const Sample& sample, SessionStep& told) { told = work_->step(sample); }
 SessionStep Session::step(VectorIn u, VectorIn y) {
   return work_->step(detail::sample_of(work_->last_ ? *work_->last_ + 1 : 0, u, y));
 }

@@ -3,7 +3,9 @@
 // the public functions only.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +14,7 @@
 #include "cordon/core/answer.hpp"
 #include "cordon/core/box.hpp"
 #include "cordon/core/line_form.hpp"
+#include "cordon/core/recycled.hpp"
 #include "cordon/core/view.hpp"
 
 namespace cordon {
@@ -66,6 +69,13 @@ class Set {
   virtual ~Set() = default;
   Set(const Set&) = delete;
   Set& operator=(const Set&) = delete;
+  /// Every step makes sets, and lets others go: their memory is used again.
+  static void* operator new(std::size_t size);
+  static void* operator new(std::size_t size, std::align_val_t alignment);
+  static void operator delete(void* memory) { give_memory(memory); }
+  static void operator delete(void* memory, std::align_val_t alignment) {
+    ::operator delete(memory, alignment);
+  }
 
   Index dim() const { return dim_; }
   const SetBackend& backend() const { return *backend_; }

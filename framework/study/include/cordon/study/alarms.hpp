@@ -3,8 +3,10 @@
 // (docs/online.md).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,13 +25,18 @@ std::string_view to_string(AlarmCause cause) noexcept;
 /// An alarm stands from the sample that has raised it until it is acknowledged and its cause is
 /// gone, whichever comes last.
 struct Alarm {
+  /// What is left of the modes, where it is not the index of the only one.
+  static constexpr Index not_known = -2, none_left = -1;
+
   AlarmCause cause = AlarmCause::fault;
   Index raised_at = 0;     ///< k of the sample
   Index since = 0;         ///< first time that the evidence speaks of
   std::int64_t times = 1;  ///< that the cause has come while the alarm stood
   bool is_active = true;   ///< does the cause last?
   bool acknowledged = false;
-  std::string text;        ///< in words: what, since when, and by what evidence
+  std::string reason;      ///< in words: what is proven, since when, and by what evidence
+  Index left = not_known;  ///< of a fault: the only mode left, or `none_left`
+  std::string text;        ///< `reason`, and what is left
   Certificate proof = {};  ///< of the sample that has raised it, as its decision has it
 };
 
@@ -56,8 +63,15 @@ class Alarms {
   Alarms(const Alarms&) = default;
   Alarms& operator=(const Alarms&) = default;
 
-  /// Steps come in order; those that are taken again, after late outputs, replace what they said.
-  std::vector<AlarmChange> step(const SessionStep& step);
+  /// Steps come in order. `held`: the last time whose input was not sent, and is taken for that of
+  /// the time before; evidence that speaks of it says so.
+  std::vector<AlarmChange> step(const SessionStep& step, std::optional<Index> held = {});
+  /// Steps that are taken again, after late outputs, and those that follow: what they change on the
+  /// whole, told of the last one.
+  std::vector<AlarmChange> retake(const std::vector<const SessionStep*>& steps,
+                                  std::optional<Index> held = {});
+  /// Times begin anew; alarms stay.
+  void begin_anew();
   /// Of all that stand.
   std::vector<AlarmChange> acknowledge();
   const std::vector<Alarm>& standing() const { return standing_; }
@@ -67,7 +81,11 @@ class Alarms {
  private:
   struct Finding;
   std::vector<Finding> findings(const SessionStep& step) const;
+  std::vector<Finding> fault_findings(const SessionStep& step) const;
+  /// What steps before had made known of a cause stays as it was, if nothing else came out now.
+  void settle(const Alarm& before, std::vector<AlarmChange>& changes);
   void raise(const Finding& finding, Index k, std::vector<AlarmChange>& changes);
+  void specify(const Finding& finding, Index k, std::vector<AlarmChange>& changes);
   void pass(AlarmCause cause, Index k, std::vector<AlarmChange>& changes);
   std::string time(Index k) const { return time_text(labels_, k); }
   std::string mode(Index j) const;
@@ -75,7 +93,12 @@ class Alarms {
   Labels labels_;
   std::vector<std::string> modes_;
   std::vector<Alarm> standing_;
-  Index last_ = -1;  ///< k of the last step; of those that are taken again, what it was
+  Index last_ = -1;   ///< k of the last step
+  Index window_ = 0;  ///< samples that late outputs may lie behind the last one
+  /// By cause, the times within the window that it came with, and whether steps that were taken
+  /// again have added one.
+  std::array<std::vector<Index>, 3> told_;
+  std::array<bool, 3> news_ = {};
 };
 
 /// {"what", "k", "cause", "raised_at", "since", "times", "active", "acknowledged", "text",

@@ -88,6 +88,9 @@ class Session {
   /// has happened then. Any other error is one of a component, and ends the session until `start`
   /// or `restore`.
   SessionStep step(const Sample& sample);
+  /// The same in place of what was told before, whose memory is used again: with intervals and
+  /// zonotopes no further one is asked for, once there were some steps.
+  void step(const Sample& sample, SessionStep& told);
   /// Has a step ended with an error of a component?
   bool has_ended() const;
   /// Of the last sample; nothing: there has been none.

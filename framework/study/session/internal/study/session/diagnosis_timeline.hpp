@@ -43,6 +43,10 @@ class DiagnosisTimeline {
  public:
   void step(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell);
   void serialize(Archive& archive);
+  /// Is it new, or of a bank of so many modes?
+  bool fits(std::size_t modes) const {
+    return (!before_ || before_->candidate.size() == modes) && left_open_.size() <= modes;
+  }
 
  private:
   void exclusions(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell);

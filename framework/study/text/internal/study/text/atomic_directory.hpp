@@ -24,12 +24,11 @@ class OutputFile final : public Sink {
   OutputFile& operator=(const OutputFile&) = delete;
 
   void write(std::string_view bytes) override;
-  void close();  ///< writes what is buffered, waits until it is on the disk, and closes
+  void flush();                 ///< writes what is buffered
+  void close();                 ///< the same, waits until it is on the disk, and closes
   ManifestEntry entry() const;  ///< of all that was written and is no longer buffered
 
  private:
-  void flush();
-
   std::filesystem::path path_;
   int descriptor_;
   std::string buffer_;
