@@ -59,8 +59,11 @@ Exit new_study(const fs::path& wanted, const std::string& kind) {
   write_new_file(file, content_of(kind, title));
   note(fmt::format("Wrote {}\nNext:", file.string()));
   const std::string shown = quoted(as_operand(file));
-  print(fmt::format("cordon validate {}\ncordon run {} --out {}\n", shown, shown,
-                    quoted(fs::path("results") / title)));
+  const std::string use =
+      kind == "online"
+          ? fmt::format("cordon stream {} --pipeline alarms --watch", shown)
+          : fmt::format("cordon run {} --out {}", shown, quoted(fs::path("results") / title));
+  print(fmt::format("cordon validate {}\n{}\n", shown, use));
   return Exit::done;
 }
 

@@ -112,7 +112,7 @@ TEST_CASE("no memory is a code, wherever it is missing") {
       REQUIRE(session.step(second) == CORDON_OK);
       CHECK(cordon_result_json(session, 0) == wanted);
     }
-    CHECK(refused > 5);
+    CHECK(refused >= 2);  // most of what a step needs it has from the step before
     CHECK(cordon_result_json(session, 0) == wanted);
   }
 }

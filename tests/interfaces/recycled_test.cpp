@@ -2,6 +2,7 @@
 // Memory that is used again is that of malloc, of the size that was asked for, and of any thread.
 #include "cordon/core/recycled.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <numeric>
@@ -21,10 +22,13 @@ TEST_CASE("blocks hold what was asked for, and do not overlap") {
   };
   std::vector<Block> held;
   const auto check = [](const Block& block) {
-    for (std::size_t i = 0; i < block.size; ++i) REQUIRE(block.at[i] == block.fill);
+    REQUIRE(std::all_of(block.at, block.at + block.size,
+                        [&](unsigned char byte) { return byte == block.fill; }));
   };
   for (int round = 0; round < 50'000; ++round) {
-    const std::size_t size = random() % (round % 100 == 0 ? 3'000'000 : round % 3 == 0 ? 5000 : 200);
+    const std::size_t size = random() % (round % 100 == 0 ? 3'000'000
+                                         : round % 3 == 0 ? 5000
+                                                          : 200);
     switch (held.empty() ? 0 : random() % 4) {
       case 0:
       case 1: {
@@ -40,7 +44,8 @@ TEST_CASE("blocks hold what was asked for, and do not overlap") {
         const std::size_t kept = std::min(block.size, size);
         block.at = static_cast<unsigned char*>(resize_memory(block.at, size));
         REQUIRE(block.at != nullptr);
-        for (std::size_t i = 0; i < kept; ++i) REQUIRE(block.at[i] == block.fill);
+        REQUIRE(std::all_of(block.at, block.at + kept,
+                            [&](unsigned char byte) { return byte == block.fill; }));
         block.size = size;
         std::memset(block.at, block.fill, size);
         break;

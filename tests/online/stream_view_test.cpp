@@ -2,6 +2,8 @@
 // What people see of a stream: pictures that fit their terminal, and lines elsewhere.
 #include "stream_view.hpp"
 
+#include <cmath>
+#include <limits>
 #include <sstream>
 
 #include <doctest/doctest.h>
@@ -78,6 +80,25 @@ TEST_CASE("pictures fit the terminal, whatever its size") {
           CHECK(width_of(line) <= std::max<std::size_t>(columns, 2));
       }
     }
+  }
+}
+
+TEST_CASE("bounds at the ends of the numbers have their place in a picture") {
+  const Loaded loaded;
+  OnlineSession session(loaded.study, loaded.registry, "zonotope");
+  StreamView view(loaded.study, session, TerminalSize{20, 100});
+  const double most = std::numeric_limits<double>::max(), none = HUGE_VAL;
+  for (const auto& [lower, upper] :
+       {std::pair{-most, most}, std::pair{-none, none}, std::pair{-none, 0.},
+        std::pair{5e-324, 1e-320}, std::pair{most / 2, most}}) {
+    SessionStep told;
+    told.estimate.emplace();
+    told.estimate->estimate.set = session.session().backend().point(Vector::Zero(2));
+    told.estimate->hull = {Vector::Constant(2, lower), Vector::Constant(2, upper)};
+    Taken taken;
+    taken.steps.push_back({told});
+    view.show(taken);
+    CHECK(view.last().find("x_1 [") != std::string::npos);
   }
 }
 

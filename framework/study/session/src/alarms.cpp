@@ -230,7 +230,7 @@ void Alarms::settle(const Alarm& before, std::vector<AlarmChange>& changes) {
     const AlarmChange kept = *gone;
     std::erase_if(changes, is_of_it);
     changes.push_back(kept);
-  } else if (at != standing_.end() && !news_[static_cast<std::size_t>(before.cause)]) {
+  } else if (at != standing_.end() && !lasts && !news_[static_cast<std::size_t>(before.cause)]) {
     *at = before;
     std::erase_if(changes, is_of_it);
   }
@@ -248,7 +248,8 @@ std::vector<AlarmChange> Alarms::retake(const std::vector<const SessionStep*>& s
   // What was told of these samples already, and was acknowledged and gone, is no news.
   std::erase_if(standing_, [&](const Alarm& alarm) {
     const bool stood = std::ranges::find(before, alarm.cause, &Alarm::cause) != before.end();
-    const bool is_known = !stood && !news_[static_cast<std::size_t>(alarm.cause)];
+    const bool is_known =
+        !stood && !alarm.is_active && !news_[static_cast<std::size_t>(alarm.cause)];
     if (is_known)
       std::erase_if(changes, [&](const AlarmChange& c) { return c.alarm.cause == alarm.cause; });
     return is_known;
