@@ -106,8 +106,8 @@ TEST_CASE("steps with intervals, zonotopes and gains ask for no memory") {
 }
 
 TEST_CASE("steps with constraints ask for some, hulls included") {
-  CHECK(check_each("observer_catalogue", {"constrained_zonotope"}, 45) == 4);
-  CHECK(check_each("descriptor_four_representations", {"line_zonotope"}, 80) == 1);
+  CHECK(check_each("observer_catalogue", {"constrained_zonotope"}, 40) == 4);
+  CHECK(check_each("descriptor_four_representations", {"line_zonotope"}, 60) == 1);
 }
 
 #endif

@@ -194,7 +194,7 @@ std::vector<AlarmChange> Alarms::step(const SessionStep& step, std::optional<Ind
     const bool rests_on_it = held && (finding.cause != AlarmCause::fault || *held >= finding.since);
     if (rests_on_it && finding.what == Finding::What::comes)
       finding.text +=
-          " (if the input, which was not sent at " + time(*held) + ", was that of the time before)";
+          " (if the plant held its input where times were filled, last at " + time(*held) + ")";
     if (finding.what == Finding::What::comes) raise(finding, step.k, changes);
     if (finding.what == Finding::What::says_more) specify(finding, step.k, changes);
     if (finding.what == Finding::What::goes) pass(finding.cause, step.k, changes);
