@@ -145,17 +145,16 @@ class SampleLines::Reader {
     const bool is_null = list && list->is(Value::Kind::null);
     if ((!list || is_null) && (may_be_missing || (count == 0 && !list))) return values;
     if (!list) {
-      root.error(
-          "\"" + std::string(key) + "\" is missing",
-          "every sample has its " + std::to_string(count) + (count == 1 ? " input" : " inputs"));
+      root.error("\"" + std::string(key) + "\" is missing",
+                 "every sample has its " + json::counted(count, "input"));
       return values;
     }
     if (!list->expect(Value::Kind::array, "give a list of " + json::counted(count, "number")))
       return values;
     if (static_cast<Index>(list->size()) != count) {
       list->error("has " + json::counted(static_cast<Index>(list->size()), "number") +
-                      ", the system has " + std::to_string(count) +
-                      (may_be_missing ? " outputs" : " inputs"),
+                      ", the system has " +
+                      json::counted(count, may_be_missing ? "output" : "input"),
                   may_be_missing ? "write null for an output that is missing" : "");
       return values;
     }
