@@ -122,6 +122,38 @@ TEST_CASE("what is later than the lag is dropped, and said") {
   const Taken taken = session.take(given[1]);
   CHECK(taken.how == How::late);
   CHECK(taken.said.find("lag") != std::string::npos);
+  OnlineSession other = session_of(R"({"late": "correct", "lag": 2})");
+  for (Index k = 0; k < 6; ++k) {
+    const GivenSample& sample = given[static_cast<std::size_t>(k)];
+    other.take(k == 3 ? lacking(sample, 0) : sample);
+  }
+  CHECK(other.take(given[3]).how == How::corrected);  // two behind the last one
+}
+
+TEST_CASE("an input that comes late is held where the times after it were filled") {
+  OnlineSession session = session_of(R"({"jumps": "fill", "late": "correct"})"),
+                in_time = session_of(R"({"jumps": "fill", "late": "correct"})");
+  std::vector<GivenSample> given = samples(3);
+  given[2].u.setConstant(4);  // and so it stays until k = 5
+  GivenSample after{5, Vector::Zero(1), Vector::Constant(2, std::nan(""))};
+  for (const Index k : {0, 1}) session.take(given[static_cast<std::size_t>(k)]);
+  session.take(after);
+  CHECK(session.take(given[2]).how == How::corrected);
+  for (const GivenSample& sample : given) in_time.take(sample);
+  in_time.take(after);
+  after.k = 6;
+  CHECK(same(session.take(after).steps[0].estimate->hull,
+             in_time.take(after).steps[0].estimate->hull));
+}
+
+TEST_CASE("an input that was not the one that was held is told where the past stays") {
+  OnlineSession session = session_of(R"({"jumps": "fill"})");
+  std::vector<GivenSample> given = samples(5);
+  for (const Index k : {0, 1, 4}) session.take(given[static_cast<std::size_t>(k)]);
+  given[2].u.setConstant(9);
+  const Taken taken = session.take(given[2]);
+  CHECK(taken.how == How::late);
+  CHECK(taken.said.find("what is said is wrong") != std::string::npos);
 }
 
 TEST_CASE("the input of a time that was filled comes late as well") {
