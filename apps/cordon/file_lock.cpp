@@ -5,9 +5,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,35 +13,25 @@
 
 namespace cordon::apps {
 
-void lock(int descriptor, const std::filesystem::path& file) {
+void lock(int descriptor, const std::filesystem::path& what) {
   if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return;
   if (errno != EWOULDBLOCK) return;  // a file system without locks
-  throw InputError(file.string(), {{"", "another stream works with it",
+  throw InputError(what.string(), {{"", "another stream works with it",
                                     "end that one first, or name another file"}});
 }
 
-FileLock::~FileLock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-void FileLock::take(const std::filesystem::path& file) {
-  const int opened = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (opened < 0) throw Error(Errc::io, fmt::format("{}: {}", file.string(), std::strerror(errno)));
+FileLock::FileLock(const std::filesystem::path& file, const std::filesystem::path& what)
+    : descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0)
+    throw Error(Errc::io, fmt::format("{}: {}", file.string(), std::strerror(errno)));
   try {
-    lock(opened, file);
+    lock(descriptor_, what);
   } catch (const Error&) {
-    ::close(opened);
+    ::close(descriptor_);
     throw;
   }
-  if (const int before = std::exchange(descriptor_, opened); before >= 0) ::close(before);
 }
 
-bool FileLock::holds(const std::filesystem::path& file) const {
-  if (descriptor_ < 0) return true;
-  struct stat locked {
-  }, named{};
-  return ::fstat(descriptor_, &locked) == 0 && ::stat(file.c_str(), &named) == 0 &&
-         locked.st_dev == named.st_dev && locked.st_ino == named.st_ino;
-}
+FileLock::~FileLock() { ::close(descriptor_); }
 
 }  // namespace cordon::apps

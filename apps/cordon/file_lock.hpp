@@ -3,29 +3,23 @@
 #pragma once
 
 #include <filesystem>
-#include <utility>
 
 namespace cordon::apps {
 
+/// Locks a file that is made for it, as long as the object lives; the file stays. Throws InputError
+/// about `what` where another process has locked it, Errc::io.
 class FileLock {
  public:
-  FileLock() = default;
+  FileLock(const std::filesystem::path& file, const std::filesystem::path& what);
   ~FileLock();
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;
-
-  /// Locks the file, which has to be there, in place of the one before. Throws InputError where
-  /// another process has locked it, Errc::io.
-  void take(const std::filesystem::path& file);
-  /// Is what has this name still the file that was locked, or was none locked?
-  bool holds(const std::filesystem::path& file) const;
-  void swap(FileLock& other) noexcept { std::swap(descriptor_, other.descriptor_); }
 
  private:
   int descriptor_ = -1;
 };
 
-/// Throws InputError where another process has locked it.
-void lock(int descriptor, const std::filesystem::path& file);
+/// Locks an open file. Throws InputError where another process has locked it.
+void lock(int descriptor, const std::filesystem::path& what);
 
 }  // namespace cordon::apps

@@ -19,11 +19,20 @@ void serialize(CheckpointState& state, Archive& archive) {
 
 }  // namespace
 
-std::optional<CheckpointState> Checkpoint::read() {
+Checkpoint::Checkpoint(std::filesystem::path file) : file_(std::move(file)) {
+  if (!file_.empty()) lock_.emplace(beside(".lock"), file_);
+}
+
+bool Checkpoint::uses(const std::filesystem::path& other) const {
+  const auto whole = [](const std::filesystem::path& path) {
+    return std::filesystem::absolute(path).lexically_normal();
+  };
+  return whole(other) == whole(file_) || whole(other) == whole(beside(".new")) ||
+         whole(other) == whole(beside(".lock"));
+}
+
+std::optional<CheckpointState> Checkpoint::read() const {
   if (!detail::is_there(file_)) return std::nullopt;
-  do {
-    lock_.take(file_);
-  } while (!lock_.holds(file_));  // replaced meanwhile
   const std::string text = json::read_file(file_.string());
   try {
     CheckpointState state;
@@ -37,28 +46,23 @@ std::optional<CheckpointState> Checkpoint::read() {
   }
 }
 
-void Checkpoint::write(CheckpointState state) {
-  if (detail::is_there(file_) && !lock_.holds(file_))
-    throw Error(Errc::io, file_.string() + ": another stream has written it");
+void Checkpoint::write(CheckpointState state) const {
   Archive archive(nullptr);
   serialize(state, archive);
-  const std::filesystem::path beside = file_.string() + ".new";
-  FileLock next;
+  const std::filesystem::path fresh = beside(".new");
   std::error_code ignored;
-  std::filesystem::remove(beside, ignored);
+  std::filesystem::remove(fresh, ignored);
   try {
-    detail::OutputFile out(beside);
+    detail::OutputFile out(fresh);
     out.write(detail::sealed(name_of_file, archive.bytes()));
     out.close();
-    next.take(beside);
   } catch (const Error&) {
-    std::filesystem::remove(beside, ignored);
+    std::filesystem::remove(fresh, ignored);
     throw;
   }
   std::error_code failure;
-  std::filesystem::rename(beside, file_, failure);
+  std::filesystem::rename(fresh, file_, failure);
   if (failure) throw Error(Errc::io, file_.string() + ": " + failure.message());
-  lock_.swap(next);
   detail::sync_names(std::filesystem::absolute(file_).parent_path());
 }
 

@@ -19,18 +19,23 @@ struct CheckpointState {
 
 class Checkpoint {
  public:
-  explicit Checkpoint(std::filesystem::path file) : file_(std::move(file)) {}
+  /// Nothing is kept where the file has no name. Throws InputError where it belongs to another
+  /// stream that is at work: FILE.lock, which stays, tells.
+  explicit Checkpoint(std::filesystem::path file);
 
-  /// Nothing: there is no file. Throws InputError for one that is no checkpoint, is damaged, or
-  /// belongs to another stream that is at work; from now on it belongs to this one.
-  std::optional<CheckpointState> read();
+  /// Nothing: there is no file. Throws InputError for one that is no checkpoint, or is damaged.
+  std::optional<CheckpointState> read() const;
   /// In place of the one before, which stays if this one cannot be written: Errc::io. It is on the
   /// disk afterwards.
-  void write(CheckpointState state);
+  void write(CheckpointState state) const;
+  /// Would another file of this name get in the way?
+  bool uses(const std::filesystem::path& other) const;
 
  private:
+  std::filesystem::path beside(const char* ending) const { return file_.string() + ending; }
+
   std::filesystem::path file_;
-  FileLock lock_;
+  std::optional<FileLock> lock_;
 };
 
 }  // namespace cordon::apps

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
@@ -89,6 +90,11 @@ void StreamLog::write(const std::string& line) {
 }
 
 void StreamLog::flush() {
+  struct stat held {
+  }, named{};
+  if (::fstat(descriptor_, &held) != 0 || ::stat(file_.c_str(), &named) != 0 ||
+      held.st_ino != named.st_ino || held.st_dev != named.st_dev)
+    throw Error(Errc::io, file_.string() + ": was moved away or removed");
   if (::fdatasync(descriptor_) != 0 && errno != EINVAL)
     throw Error(Errc::io, fmt::format("{}: {}", file_.string(), std::strerror(errno)));
 }

@@ -31,7 +31,8 @@ StreamLoop::StreamLoop(const Study& study, const Registry& registry,
                if (view_) output_.write(view_->idle());
              }),
       output_(STDOUT_FILENO, stop),
-      checkpoint_(arguments.checkpoint) {
+      checkpoint_(arguments.checkpoint),
+      stop_(stop) {
   session_.prove_hulls(arguments.sets);
   if (arguments.watch) view_.emplace(study, session_, terminal_size());
   if (!arguments.record.empty())
@@ -41,11 +42,9 @@ StreamLoop::StreamLoop(const Study& study, const Registry& registry,
 
 bool StreamLoop::restore() {
   if (arguments_.checkpoint.empty()) return true;
-  if (!arguments_.log.empty() &&
-      std::filesystem::absolute(arguments_.log).lexically_normal() ==
-          std::filesystem::absolute(arguments_.checkpoint).lexically_normal())
+  if (!arguments_.log.empty() && checkpoint_.uses(arguments_.log))
     throw InputError(arguments_.log.string(),
-                     {{"", "is named as log and as checkpoint", "give each a file of its own"}});
+                     {{"", "is a file of the checkpoint", "give the log a name of its own"}});
   const std::optional<CheckpointState> state = checkpoint_.read();
   if (state && (state->log_bytes > 0) != !arguments_.log.empty()) {
     throw InputError(arguments_.checkpoint.string(),
@@ -101,7 +100,7 @@ void StreamLoop::run() {
 void StreamLoop::answer_all() {
   const bool keeps = !arguments_.checkpoint.empty();
   std::string line;
-  while (replayed_ ? replayed_->next(line) : input_.next(line)) {
+  while (replayed_ ? !*stop_ && replayed_->next(line) : input_.next(line)) {
     ++line_;
     if (!answer(line)) return;  // nobody has read it: who goes on answers this line again
     if (keeps && since_checkpoint_ >= arguments_.every) save();
@@ -179,8 +178,8 @@ std::string StreamLoop::answer_to(const GivenLine& given) {
       throw Error(Errc::invalid,
                   "a stream that is recorded does not begin anew; end it, and start "
                   "another one");
-    session_.start();
-    text = view_ ? view_->begin_anew() : line_of(*given.request, {});
+    changes = session_.start();
+    text = view_ ? view_->begin_anew() + view_->show(changes) : line_of(*given.request, changes);
   }
   std::optional<Taken> taken;
   if (given.sample) taken = take(*given.sample);

@@ -74,6 +74,7 @@ class StreamLoop {
   std::optional<StreamRecord> record_;
   std::optional<StreamView> view_;  ///< in place of lines for programs
   Checkpoint checkpoint_;
+  const std::atomic<bool>* stop_;
   detail::Quantiles latency_us_;
   std::int64_t line_ = 0, refused_ = 0, since_checkpoint_ = 0, unwritten_ = 0, left_open_ = 0;
   std::vector<std::string> complaints_;

@@ -341,6 +341,7 @@ std::string StreamView::drawn() {
   const std::size_t room = std::max<std::size_t>(terminal_->rows, 2) - 1;
   const auto shorten = [](Lines& some, std::size_t most) {
     if (some.size() <= most) return;
+    if (most == 1) return some.resize(1);  // the one that says most
     const std::size_t left = some.size() - most + 1;
     some.resize(std::max<std::size_t>(most, 1) - 1);
     if (most > 0) some.push_back({fmt::format("… and {} lines more", left)});

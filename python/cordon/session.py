@@ -127,9 +127,9 @@ class Session:
         """Takes note of all alarms that stand."""
         return [_change_of(one) for one in self._made.acknowledge()]
 
-    def start(self) -> None:
-        """Begins anew; alarms stay."""
-        self._made.start()
+    def start(self) -> List[AlarmChange]:
+        """Begins anew. Alarms stay until they are acknowledged; their causes are gone."""
+        return [_change_of(one) for one in self._made.start()]
 
     def save(self) -> bytes:
         """All that later steps depend on, alarms included."""

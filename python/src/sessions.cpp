@@ -95,9 +95,9 @@ class SessionHandle {
     return json_of_all(standing);
   }
 
-  void start() {
+  std::vector<std::string> start() {
     const Turn turn(busy_);
-    unlocked([&] { session_.start(); });
+    return json_of_all(unlocked([&] { return session_.start(); }));
   }
   py::bytes save() {
     const Turn turn(busy_);

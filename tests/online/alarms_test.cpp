@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "cordon/interfaces/archive.hpp"
+#include "cordon/sets/sampling.hpp"
 #include "online/study.hpp"
 
 using namespace online_test;
@@ -260,4 +261,91 @@ TEST_CASE("what a session has told before it began anew hides nothing") {
   const auto late = on.take(lost);
   REQUIRE(!late.empty());
   CHECK(late[0].what == What::raised);
+}
+
+TEST_CASE("what the first sample excludes raises an alarm") {
+  OnTank on("bank");
+  GivenSample sample = on.tank.next(0, .1);
+  sample.y[0] = 5;  // beyond X0 in every mode
+  const auto raised = on.take(sample);
+  REQUIRE(!raised.empty());
+  CHECK(raised[0].what == What::raised);
+  CHECK(raised[0].alarm.proof.kind == Certificate::Kind::farkas);
+}
+
+TEST_CASE("after a new beginning a cause is told again") {
+  OnTank on("bank");
+  std::vector<AlarmChange> first;
+  for (Index k = 0; k < 20; ++k) {
+    for (const AlarmChange& change : on.take(on.tank.next(k, .1, k >= 10))) first.push_back(change);
+  }
+  REQUIRE(!first.empty());
+  on.session.acknowledge();
+  const auto begun = on.session.start();
+  REQUIRE(begun.size() == 1);
+  CHECK(begun[0].what == What::gone);
+  on.tank = {};
+  std::vector<AlarmChange> second;
+  for (Index k = 0; k < 20; ++k) {
+    for (const AlarmChange& change : on.take(on.tank.next(k, .1, k >= 10)))
+      second.push_back(change);
+  }
+  REQUIRE(second.size() == first.size());
+  CHECK(second[0].what == What::raised);
+}
+
+TEST_CASE("an earlier cause that comes late is told, though a later one was acknowledged") {
+  OnTank on("observer");
+  for (Index k = 0; k < 30; ++k) on.take(on.tank.next(k, .1));
+  GivenSample early = on.tank.next(30, .1);
+  on.take(without_outputs(early));
+  for (Index k = 31; k < 34; ++k) on.take(on.tank.next(k, .1));
+  GivenSample later = on.tank.next(34, .1);
+  later.y[0] += 5;
+  REQUIRE(on.take(later).size() == 1);
+  on.session.acknowledge();
+  early.y[0] += 5;  // an outlier as well: now the one at k = 34 is one too many
+  const auto told = on.take(early);
+  REQUIRE(!told.empty());
+  for (const AlarmChange& change : told) CHECK_FALSE(change.alarm.acknowledged);
+}
+
+TEST_CASE("alarms with outputs that come late are in the end those of outputs that came in time") {
+  int active = 0, corrected = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    for (const char* pipeline : {"bank", "observer"}) {
+      CAPTURE(seed);
+      CAPTURE(std::string(pipeline));
+      sets::Random random(seed);
+      OnTank late(pipeline), in_time(pipeline);
+      std::vector<std::pair<Index, GivenSample>> waiting;
+      OneTank tank;
+      for (Index k = 0; k < 60; ++k) {
+        GivenSample sample = tank.next(k, .2 * random.unit(), k >= 30 && seed % 3 == 0);
+        if (random.unit() < .04) sample.y[0] += 4 * random.unit() - 2;
+        const bool is_late = random.unit() < .3 && k < 50;
+        if (is_late) waiting.emplace_back(k + 1 + static_cast<Index>(8 * random.unit()), sample);
+        late.take(is_late ? without_outputs(sample) : sample);
+        in_time.take(sample);
+        for (auto& [due, one] : waiting) {
+          if (due != k) continue;
+          late.take(one);
+          ++corrected;
+        }
+      }
+      for (const Alarm& alarm : in_time.session.alarms()) {
+        const auto& all = late.session.alarms();
+        const auto at = std::find_if(all.begin(), all.end(),
+                                     [&](const Alarm& one) { return one.cause == alarm.cause; });
+        REQUIRE(at != all.end());
+        CHECK(at->is_active == alarm.is_active);
+        if (!alarm.is_active) continue;
+        ++active;
+        CHECK(at->text == alarm.text);
+        CHECK(at->proof.data == alarm.proof.data);
+      }
+    }
+  }
+  CHECK(active > 20);
+  CHECK(corrected > 500);
 }

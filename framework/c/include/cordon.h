@@ -159,7 +159,8 @@ const char* cordon_take_said(const cordon_session* session);
 int64_t cordon_last_k(const cordon_session* session);
 /* 1: a step has ended with an error of a component, or of memory; else 0. */
 int cordon_has_ended(const cordon_session* session);
-/* Begins anew, at any time. Alarms that stand remain. */
+/* Begins anew, at any time. Alarms stay until they are acknowledged; their causes are gone, which
+ * the changes tell. */
 int cordon_reset(cordon_session* session);
 
 /* ---- results of the last step or take, in the order of times ---- */

@@ -89,7 +89,7 @@ int cordon_reset(cordon_session* session) {
   return c::done(__func__, [&] {
     cordon_session& s = c::session_of(session);
     s.forget();
-    s.online.start();
+    s.changes = c::changes_of(s.online.start());
     s.lost = false;
   });
 }

@@ -71,13 +71,26 @@ class Store {
     return block;
   }
   void give(void* block, std::size_t kind) {
-    if (kept_ + size_of(kind) > most_kept) return system_free(block);
+    if (kept_ + size_of(kind) > most_kept && !let_go(kind)) return system_free(block);
     *static_cast<void**>(block) = first_[kind];
     first_[kind] = block;
     kept_ += size_of(kind);
   }
 
  private:
+  /// One of a larger kind, the largest that there is, in place of which this one can be kept.
+  bool let_go(std::size_t kind) {
+    for (std::size_t larger = kinds; --larger > kind;) {
+      if (!first_[larger]) continue;
+      void* const block = first_[larger];
+      first_[larger] = *static_cast<void**>(block);
+      kept_ -= size_of(larger);
+      system_free(block);
+      return true;
+    }
+    return false;
+  }
+
   void* first_[kinds] = {};
   std::size_t kept_ = 0;
 };

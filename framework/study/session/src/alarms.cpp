@@ -114,23 +114,30 @@ std::vector<Alarms::Finding> Alarms::fault_findings(const SessionStep& step) con
   using What = Finding::What;
   std::vector<Finding> found;
   const Diagnosis& diagnosis = step.diagnosis->diagnosis;
-  for (const DiagnosisEvent& event : step.diagnosis->events) {
-    using Kind = DiagnosisEvent::Kind;
-    const bool is_excluded = event.what == Kind::detected || event.what == Kind::excluded;
-    if (!is_excluded || event.mode != nominal) continue;
-    Index since = diagnosis.since;
-    for (const FaultBound& bound : event.faults) since = std::min(since, bound.at);
+  const auto excluded = [&](Index since, const std::vector<FaultBound>& faults,
+                            const Certificate& why) {
+    for (const FaultBound& bound : faults) since = std::min(since, bound.at);
     std::string text =
         "the samples from " + time(since) + " to " + time(step.k) + " exclude " + mode(nominal);
-    for (const FaultBound& bound : event.faults) {
+    for (const FaultBound& bound : faults) {
       text += "; " + label_of(labels_.faults, "n", bound.fault) + " at " + time(bound.at) +
               " is within [" + detail::to_text(bound.lower) + ", " + detail::to_text(bound.upper) +
               "]";
     }
-    found.push_back({What::comes, AlarmCause::fault, since, text, event.evidence.why});
+    found.push_back({What::comes, AlarmCause::fault, since, text, why});
+  };
+  for (const DiagnosisEvent& event : step.diagnosis->events) {
+    using Kind = DiagnosisEvent::Kind;
+    const bool is_excluded = event.what == Kind::detected || event.what == Kind::excluded;
+    if (is_excluded && event.mode == nominal)
+      excluded(diagnosis.since, event.faults, event.evidence.why);
   }
+  // The first sample has no event of what it excludes.
+  const bool is_proven =
+      !diagnosis.modes.empty() && diagnosis.modes.front().consistent == Answer::no;
+  if (found.empty() && is_proven) excluded(diagnosis.since, {}, diagnosis.modes.front().why);
   const auto says_more = [&](Index left, const std::string& text) {
-    found.push_back({What::says_more, AlarmCause::fault, 0, text, {}, left});
+    found.push_back({What::says_more, AlarmCause::fault, diagnosis.since, text, {}, left});
   };
   if (diagnosis.decision == Decision::unknown_fault) {
     says_more(Alarm::none_left, "at " + time(step.k) + " every mode of the bank is excluded");
@@ -144,14 +151,9 @@ std::vector<Alarms::Finding> Alarms::fault_findings(const SessionStep& step) con
 }
 
 void Alarms::raise(const Finding& finding, Index k, std::vector<AlarmChange>& changes) {
-  const auto cause = static_cast<std::size_t>(finding.cause);
-  std::vector<Index>& told = told_[cause];
-  if (const auto place = std::ranges::lower_bound(told, k); place == told.end() || *place != k) {
-    told.insert(place, k);
-    news_[cause] = true;
-  }
   const auto at = std::ranges::find(standing_, finding.cause, &Alarm::cause);
   if (at != standing_.end() && at->is_active) return;  // the evidence that has raised it stays
+  onsets_[static_cast<std::size_t>(finding.cause)].push_back(k);
   const bool is_new = at == standing_.end();
   Alarm& alarm = is_new ? standing_.emplace_back() : *at;
   if (is_new) {
@@ -192,7 +194,7 @@ std::vector<AlarmChange> Alarms::step(const SessionStep& step, std::optional<Ind
   for (Finding& finding : findings(step)) {
     // An estimate rests on all times before, the exclusion of a mode on those that it names.
     const bool rests_on_it = held && (finding.cause != AlarmCause::fault || *held >= finding.since);
-    if (rests_on_it && finding.what == Finding::What::comes)
+    if (rests_on_it && !finding.text.empty())
       finding.text +=
           " (if the plant held its input where times were filled, last at " + time(*held) + ")";
     if (finding.what == Finding::What::comes) raise(finding, step.k, changes);
@@ -200,66 +202,82 @@ std::vector<AlarmChange> Alarms::step(const SessionStep& step, std::optional<Ind
     if (finding.what == Finding::What::goes) pass(finding.cause, step.k, changes);
   }
   last_ = step.k;
-  for (std::vector<Index>& told : told_)
-    std::erase_if(told, [&](Index k) { return k < last_ - window_; });
+  for (std::vector<Index>& onsets : onsets_)
+    std::erase_if(onsets, [&](Index k) { return k < last_ - window_; });
   return changes;
 }
 
-void Alarms::settle(const Alarm& before, std::vector<AlarmChange>& changes) {
-  const auto at = std::ranges::find(standing_, before.cause, &Alarm::cause);
-  const bool lasts = at != standing_.end() && at->is_active;
-  const auto is_of_it = [&](const AlarmChange& change) {
-    return change.alarm.cause == before.cause;
+void Alarms::settle(AlarmCause cause, const std::optional<Alarm>& now, Index onsets,
+                    std::vector<AlarmChange>& changes) {
+  const bool lasts = now && now->is_active;
+  const auto at = std::ranges::find(standing_, cause, &Alarm::cause);
+  const auto take = [&](Alarm& told) {  // what is known now
+    told.since = now->since;
+    told.reason = now->reason;
+    told.left = now->left;
+    told.text = now->text;
+    told.proof = now->proof;
+    told.is_active = now->is_active;
   };
-  if (before.is_active && lasts) {  // as before, but for what its evidence and what is left are now
-    const Alarm now = std::exchange(*at, before);
-    const bool says_more = now.left != before.left && now.left != Alarm::not_known;
-    const std::string left =
-        (says_more ? now : before).text.substr((says_more ? now : before).reason.size());
-    std::erase_if(changes, is_of_it);
-    if (!says_more && now.reason == before.reason) return;
-    at->since = now.since;
-    at->reason = now.reason;
-    at->proof = now.proof;
-    if (says_more) at->left = now.left;
-    at->text = at->reason + left;
-    changes.push_back({AlarmChange::What::specified, last_, *at});
-  } else if (before.is_active) {  // the last change says that it is gone
-    const auto gone = std::find_if(changes.rbegin(), changes.rend(), is_of_it);
-    if (gone == changes.rend()) return;
-    const AlarmChange kept = *gone;
-    std::erase_if(changes, is_of_it);
-    changes.push_back(kept);
-  } else if (at != standing_.end() && !lasts && !news_[static_cast<std::size_t>(before.cause)]) {
-    *at = before;
-    std::erase_if(changes, is_of_it);
+  if (at == standing_.end()) {
+    if (!now || (onsets == 0 && !lasts)) return;  // acknowledged and gone: no news
+    Alarm& alarm = standing_.emplace_back(*now);
+    alarm.acknowledged = false;
+    alarm.times = std::max<Index>(onsets, 1);
+    changes.push_back({AlarmChange::What::raised, last_, alarm});
+    if (!lasts) changes.push_back({AlarmChange::What::passed, last_, alarm});
+    return;
   }
+  if (now && (onsets > 0 || (lasts && !at->is_active))) {
+    take(*at);
+    at->times += std::max<Index>(onsets, 1);
+    at->acknowledged = false;
+    changes.push_back({AlarmChange::What::again, last_, *at});
+    if (!lasts) changes.push_back({AlarmChange::What::passed, last_, *at});
+    return;
+  }
+  if (at->is_active && !lasts) {
+    if (now) take(*at);
+    at->is_active = true;
+    return pass(cause, last_, changes);
+  }
+  if (!now) return;
+  const bool says_more = lasts && at->text != now->text;
+  take(*at);
+  if (says_more) changes.push_back({AlarmChange::What::specified, last_, *at});
 }
 
-std::vector<AlarmChange> Alarms::retake(const std::vector<const SessionStep*>& steps,
-                                        std::optional<Index> held) {
-  const std::vector<Alarm> before = standing_;
-  news_.fill(false);
-  std::vector<AlarmChange> changes;
-  for (const SessionStep* one : steps) {
-    for (AlarmChange& change : step(*one, held)) changes.push_back(std::move(change));
+std::vector<AlarmChange> Alarms::retake(const std::vector<Again>& steps) {
+  Alarms again = *this;
+  again.standing_ = *steps.front().before;
+  for (std::vector<Index>& onsets : again.onsets_)
+    std::erase_if(onsets, [&](Index k) { return k >= steps.front().step->k; });
+  for (const Again& one : steps) {
+    *one.before = again.standing_;
+    again.step(*one.step, one.held);
   }
-  for (const Alarm& alarm : before) settle(alarm, changes);
-  // What was told of these samples already, and was acknowledged and gone, is no news.
-  std::erase_if(standing_, [&](const Alarm& alarm) {
-    const bool stood = std::ranges::find(before, alarm.cause, &Alarm::cause) != before.end();
-    const bool is_known =
-        !stood && !alarm.is_active && !news_[static_cast<std::size_t>(alarm.cause)];
-    if (is_known)
-      std::erase_if(changes, [&](const AlarmChange& c) { return c.alarm.cause == alarm.cause; });
-    return is_known;
-  });
-  for (AlarmChange& change : changes) change.k = last_;
+  std::vector<AlarmChange> changes;
+  last_ = again.last_;
+  for (std::size_t i = 0; i < causes; ++i) {
+    const auto cause = static_cast<AlarmCause>(i);
+    const auto at = std::ranges::find(again.standing_, cause, &Alarm::cause);
+    const auto now = at == again.standing_.end() ? std::optional<Alarm>() : *at;
+    const auto onsets = std::ranges::count_if(
+        again.onsets_[i], [&](Index k) { return !std::ranges::binary_search(onsets_[i], k); });
+    settle(cause, now, onsets, changes);
+    for (const Index k : again.onsets_[i]) {  // what was told stays told
+      const auto place = std::ranges::lower_bound(onsets_[i], k);
+      if (place == onsets_[i].end() || *place != k) onsets_[i].insert(place, k);
+    }
+  }
   return changes;
 }
 
-void Alarms::begin_anew() {
-  for (std::vector<Index>& told : told_) told.clear();
+std::vector<AlarmChange> Alarms::begin_anew() {
+  std::vector<AlarmChange> changes;
+  for (std::size_t i = 0; i < causes; ++i) pass(static_cast<AlarmCause>(i), last_, changes);
+  for (std::vector<Index>& onsets : onsets_) onsets.clear();
+  return changes;
 }
 
 std::vector<AlarmChange> Alarms::acknowledge() {
@@ -275,17 +293,15 @@ std::vector<AlarmChange> Alarms::acknowledge() {
   return changes;
 }
 
+void Alarm::serialize(Archive& archive) {
+  archive.choice(cause, static_cast<int>(causes));
+  archive(raised_at, since, times, is_active, acknowledged, reason, left, text, proof);
+}
+
 void Alarms::serialize(Archive& archive) {
   archive.section("alarms");
-  std::size_t count = standing_.size();
-  archive(last_, told_, count);
-  if (count > causes) archive.refuse("more alarms than causes");
-  standing_.resize(count);
-  for (Alarm& alarm : standing_) {
-    archive.choice(alarm.cause, static_cast<int>(causes));
-    archive(alarm.raised_at, alarm.since, alarm.times, alarm.is_active, alarm.acknowledged,
-            alarm.reason, alarm.left, alarm.text, alarm.proof);
-  }
+  archive(last_, onsets_, standing_);
+  if (standing_.size() > causes) archive.refuse("more alarms than causes");
 }
 
 }  // namespace cordon

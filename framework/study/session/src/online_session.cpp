@@ -46,12 +46,6 @@ Vector no_outputs(Index count) {
   return Vector::Constant(count, std::numeric_limits<double>::quiet_NaN());
 }
 
-std::vector<const SessionStep*> pointers(const std::vector<TakenStep>& steps) {
-  std::vector<const SessionStep*> found;
-  for (const TakenStep& step : steps) found.push_back(&step);
-  return found;
-}
-
 constexpr const char* saved_online_session = "cordon online session 1";
 
 }  // namespace
@@ -98,14 +92,15 @@ class OnlineSession::Intake {
 
   bool has_ended() const { return ended_ || session_.has_ended(); }
 
-  void start() {
+  std::vector<AlarmChange> start() {
     ended_ = true;
     session_.start();
     passed_.clear();
     held_before_.reset();
-    alarms_.begin_anew();
     if (corrects()) before_ = session_.save();
+    std::vector<AlarmChange> changes = alarms_.begin_anew();
     ended_ = false;
+    return changes;
   }
 
   std::string save() {
@@ -143,17 +138,31 @@ class OnlineSession::Intake {
     Sample sample;
     bool is_filled = false;   ///< its input is that of the sample before, and may have been another
     std::string before = {};  ///< the session before it; "" where nothing can be corrected
-    void serialize(Archive& archive) { archive(sample, is_filled, before); }
+    std::vector<Alarm> alarms = {};  ///< before it, likewise
+    void serialize(Archive& archive) { archive(sample, is_filled, before, alarms); }
   };
 
   bool corrects() const { return rules_.late == LateRule::correct; }
 
-  /// The last time whose input was not sent, and is taken for that of the time before.
-  std::optional<Index> held() const {
+  /// The last time up to k whose input was not sent, and is taken for that of the time before.
+  std::optional<Index> held(Index k) const {
     for (auto at = passed_.rbegin(); at != passed_.rend(); ++at) {
-      if (at->is_filled) return at->sample.k;
+      if (at->is_filled && at->sample.k <= k) return at->sample.k;
     }
     return held_before_;
+  }
+
+  /// Null: it is longer ago than can be corrected.
+  Passed* passed_at(Index k) {
+    const Index first = passed_.front().sample.k;
+    return k < first ? nullptr : &passed_[static_cast<std::size_t>(k - first)];
+  }
+
+  void retake_alarms(std::vector<TakenStep>& steps) {
+    std::vector<Alarms::Again> again;
+    for (const TakenStep& step : steps)
+      again.push_back({&step, held(step.k), &passed_at(step.k)->alarms});
+    steps.back().alarms = alarms_.retake(again);
   }
 
   /// Carries out what changes the session; if it ends half way, so does the session.
@@ -162,10 +171,13 @@ class OnlineSession::Intake {
     ended_ = true;
     Taken taken = change();
     if (taken.how == Taken::How::corrected) {
-      const std::vector<const SessionStep*> steps = pointers(taken.steps);
-      taken.steps.back().alarms = alarms_.retake(steps, held());
+      retake_alarms(taken.steps);
     } else {
-      for (TakenStep& step : taken.steps) step.alarms = alarms_.step(step, held());
+      for (TakenStep& step : taken.steps) {
+        if (Passed* const passed = corrects() ? passed_at(step.k) : nullptr)
+          passed->alarms = alarms_.standing();
+        step.alarms = alarms_.step(step, held(step.k));
+      }
     }
     ended_ = false;
     return taken;
@@ -324,7 +336,7 @@ bool OnlineSession::has_ended() const { return intake_->has_ended(); }
 const TakenCounts& OnlineSession::counts() const { return intake_->counts_; }
 const std::vector<Alarm>& OnlineSession::alarms() const { return intake_->alarms_.standing(); }
 std::vector<AlarmChange> OnlineSession::acknowledge() { return intake_->alarms_.acknowledge(); }
-void OnlineSession::start() { intake_->start(); }
+std::vector<AlarmChange> OnlineSession::start() { return intake_->start(); }
 std::string OnlineSession::save() { return intake_->save(); }
 void OnlineSession::restore(const std::string& saved) { intake_->restore(saved); }
 

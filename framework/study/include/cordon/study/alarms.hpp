@@ -38,6 +38,8 @@ struct Alarm {
   Index left = not_known;  ///< of a fault: the only mode left, or `none_left`
   std::string text;        ///< `reason`, and what is left
   Certificate proof = {};  ///< of the sample that has raised it, as its decision has it
+
+  void serialize(Archive& archive);
 };
 
 /// What has become of an alarm.
@@ -63,15 +65,21 @@ class Alarms {
   Alarms(const Alarms&) = default;
   Alarms& operator=(const Alarms&) = default;
 
-  /// Steps come in order. `held`: the last time whose input was not sent, and is taken for that of
-  /// the time before; evidence that speaks of it says so.
+  /// Steps come in order. `held`: the last time, up to that of the step, whose input was not sent,
+  /// and is taken for that of the time before; evidence that speaks of it says so.
   std::vector<AlarmChange> step(const SessionStep& step, std::optional<Index> held = {});
-  /// Steps that are taken again, after late outputs, and those that follow: what they change on the
-  /// whole, told of the last one.
-  std::vector<AlarmChange> retake(const std::vector<const SessionStep*>& steps,
-                                  std::optional<Index> held = {});
-  /// Times begin anew; alarms stay.
-  void begin_anew();
+  /// A step that is taken again, with what stood before it in case that it was not the first time.
+  struct Again {
+    const SessionStep* step = nullptr;
+    std::optional<Index> held = {};
+    std::vector<Alarm>* before = nullptr;
+  };
+  /// Steps that are taken again after late outputs, from where alarms stood before the first one,
+  /// and all that follow: what they change on the whole, told of the last one. What would have
+  /// stood before the others replaces what did.
+  std::vector<AlarmChange> retake(const std::vector<Again>& steps);
+  /// The pipeline begins anew: causes are gone.
+  std::vector<AlarmChange> begin_anew();
   /// Of all that stand.
   std::vector<AlarmChange> acknowledge();
   const std::vector<Alarm>& standing() const { return standing_; }
@@ -82,11 +90,12 @@ class Alarms {
   struct Finding;
   std::vector<Finding> findings(const SessionStep& step) const;
   std::vector<Finding> fault_findings(const SessionStep& step) const;
-  /// What steps before had made known of a cause stays as it was, if nothing else came out now.
-  void settle(const Alarm& before, std::vector<AlarmChange>& changes);
   void raise(const Finding& finding, Index k, std::vector<AlarmChange>& changes);
   void specify(const Finding& finding, Index k, std::vector<AlarmChange>& changes);
   void pass(AlarmCause cause, Index k, std::vector<AlarmChange>& changes);
+  /// From what was told of a cause to what `now` is: the change, if there is one.
+  void settle(AlarmCause cause, const std::optional<Alarm>& now, Index onsets,
+              std::vector<AlarmChange>& changes);
   std::string time(Index k) const { return time_text(labels_, k); }
   std::string mode(Index j) const;
 
@@ -95,10 +104,7 @@ class Alarms {
   std::vector<Alarm> standing_;
   Index last_ = -1;   ///< k of the last step
   Index window_ = 0;  ///< samples that late outputs may lie behind the last one
-  /// By cause, the times within the window that it came with, and whether steps that were taken
-  /// again have added one.
-  std::array<std::vector<Index>, 3> told_;
-  std::array<bool, 3> news_ = {};
+  std::array<std::vector<Index>, 3> onsets_;  ///< by cause, the times within the window it came at
 };
 
 /// {"what", "k", "cause", "raised_at", "since", "times", "active", "acknowledged", "text",

@@ -74,8 +74,8 @@ class OnlineSession {
   const std::vector<Alarm>& alarms() const;  ///< that stand
   std::vector<AlarmChange> acknowledge();    ///< all of them
 
-  /// Begins anew; alarms stay.
-  void start();
+  /// Begins anew. Alarms stay until they are acknowledged; their causes are gone.
+  std::vector<AlarmChange> start();
   /// As Session::save and restore, with what late outputs can still correct, the alarms and the
   /// counts. Where a state does not fit, alarms stay.
   std::string save();
