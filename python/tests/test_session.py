@@ -95,8 +95,8 @@ def test_alarms_and_states():
     assert session.alarms == other.alarms and session.alarms[0].cause == "fault"
     changes = session.acknowledge()
     assert changes[0].what == "acknowledged" and session.alarms[0].acknowledged
-    session.start()
-    assert session.k is None and session.alarms
+    assert [change.what for change in session.start()] == ["gone"]
+    assert session.k is None and not session.alarms
 
 
 def test_states_that_are_damaged_or_of_others():
