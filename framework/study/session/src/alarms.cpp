@@ -262,13 +262,10 @@ std::vector<AlarmChange> Alarms::retake(const std::vector<Again>& steps) {
     const auto cause = static_cast<AlarmCause>(i);
     const auto at = std::ranges::find(again.standing_, cause, &Alarm::cause);
     const auto now = at == again.standing_.end() ? std::optional<Alarm>() : *at;
-    const auto onsets = std::ranges::count_if(
+    const auto news = std::ranges::count_if(
         again.onsets_[i], [&](Index k) { return !std::ranges::binary_search(onsets_[i], k); });
-    settle(cause, now, onsets, changes);
-    for (const Index k : again.onsets_[i]) {  // what was told stays told
-      const auto place = std::ranges::lower_bound(onsets_[i], k);
-      if (place == onsets_[i].end() || *place != k) onsets_[i].insert(place, k);
-    }
+    settle(cause, now, news, changes);
+    onsets_[i] = again.onsets_[i];
   }
   return changes;
 }
