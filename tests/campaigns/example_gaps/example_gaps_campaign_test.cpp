@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <unistd.h>
 #include <vector>
 
@@ -47,9 +46,16 @@ double sum_of(const fs::path& file, const std::string& name) {
   std::ifstream in(file);
   std::string line;
   const auto fields = [&] {
-    std::vector<std::string> all;
-    std::istringstream row(line);
-    for (std::string field; std::getline(row, field, ',');) all.push_back(field);
+    std::vector<std::string> all(1);
+    bool quoted = false;  // as names with commas are
+    for (const char c : line) {
+      if (c == '"') quoted = !quoted;
+      if (c == ',' && !quoted) {
+        all.emplace_back();
+      } else {
+        all.back() += c;
+      }
+    }
     return all;
   };
   std::getline(in, line);
