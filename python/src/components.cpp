@@ -129,15 +129,7 @@ class ObserverHandle {
     return made;
   }
 
-  py::object contradiction() const {
-    if (!contradiction_) return py::none();
-    py::dict made;
-    made["k"] = contradiction_->k;
-    made["output"] = contradiction_->output;
-    made["distance"] = contradiction_->distance;
-    made["before"] = contradiction_->before;
-    return made;
-  }
+  py::object contradiction() const { return contradiction_of(contradiction_); }
 
   const std::vector<Index>& left_out() const { return observer_->left_out(); }
   Index lag() const { return observer_->lag(); }

@@ -69,6 +69,16 @@ py::tuple estimate_of(const Estimate& estimate) {
                         answer_of(estimate.consistent, estimate.why));
 }
 
+py::object contradiction_of(const std::optional<Contradiction>& found) {
+  if (!found) return py::none();
+  py::dict made;
+  made["k"] = found->k;
+  made["output"] = found->output;
+  made["distance"] = found->distance;
+  made["before"] = found->before;
+  return made;
+}
+
 py::dict diagnosis_of(const Diagnosis& found) {
   py::dict made;
   made["k"] = found.k;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <pybind11/pybind11.h>
 #include <stdexcept>
 
@@ -34,6 +35,8 @@ Sample sample_of(Index k, py::handle u, py::handle y, py::handle missing);
 
 /// (k, set, answer): what the package makes an Estimate of.
 py::tuple estimate_of(const Estimate& estimate);
+/// {"k", "output", "distance", "before"}, or None.
+py::object contradiction_of(const std::optional<Contradiction>& found);
 /// What it makes a Diagnosis of.
 py::dict diagnosis_of(const Diagnosis& found);
 

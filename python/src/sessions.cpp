@@ -23,16 +23,6 @@ std::vector<std::string> json_of_all(const std::vector<AlarmChange>& changes) {
   return made;
 }
 
-py::object contradiction_of(const std::optional<Contradiction>& found) {
-  if (!found) return py::none();
-  py::dict made;
-  made["k"] = found->k;
-  made["output"] = found->output;
-  made["distance"] = found->distance;
-  made["before"] = found->before;
-  return made;
-}
-
 py::tuple hull_of(const EstimateStep& step) {
   py::list proofs;
   for (const Certificate& proof : step.hull_proofs) proofs.append(certificate_of(proof));

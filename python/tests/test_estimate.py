@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import cordon as co
+from conftest import inputs_and_outputs
 
 
 def mass(**changed):
@@ -25,9 +26,7 @@ def test_steps_give_the_numbers_of_a_run(examples, name):
     if "sweep" in study:
         del study["sweep"]
     results = study.run(sets="none")
-    data = results.data
-    u, y = (np.column_stack([data[c] for c in data if c.startswith(letter)] or
-                            [np.zeros((len(data["k"]), 0))]) for letter in ("u_", "y_"))
+    u, y = inputs_and_outputs(results)
     for pipeline in study.pipelines:
         found = results[pipeline]
         if "observer" not in found.written or found.written["summary"].get("error"):

@@ -7,19 +7,16 @@ import numpy as np
 import pytest
 
 import cordon as co
-from conftest import REPOSITORY
+from conftest import REPOSITORY, inputs_and_outputs
 
 
 def tanks():
     return co.Study(REPOSITORY / "examples" / "online" / "three_tanks.json")
 
 
-def rows_of(results):
+def samples_of(results):
     """Inputs, outputs and missing outputs of the samples of a run."""
-    data = results.data
-    u, y = (np.column_stack([data[c] for c in data if c.startswith(letter)] or
-                            [np.zeros((len(data["k"]), 0))]) for letter in ("u_", "y_"))
-    for inputs, outputs in zip(u, y):
+    for inputs, outputs in zip(*inputs_and_outputs(results)):
         yield inputs, outputs, np.flatnonzero(np.isnan(outputs)).tolist()
 
 
@@ -36,7 +33,7 @@ def test_steps_are_those_of_a_run(examples, name):
         if found.written["summary"].get("error"):
             continue
         session = co.Session(study, pipeline)
-        told = [step for sample in rows_of(results)
+        told = [step for sample in samples_of(results)
                 for step in session.take(sample[0], sample[1], missing=sample[2]).steps]
         if "diagnoser" in found.written:
             assert [step.diagnosis.decision for step in told] == [
@@ -138,7 +135,7 @@ def test_wrong_arguments():
 
 def test_limits_of_work_are_said(examples):
     study = co.Study(examples / "descriptor_four_representations.json")
-    samples = list(rows_of(study.run(sets="none", pipeline="LZ")))
+    samples = list(samples_of(study.run(sets="none", pipeline="LZ")))
     study["pipelines"][study.index_of("LZ")]["max_programs"] = 0
     free, limited = co.Session(co.Study(study.file), "LZ"), co.Session(study, "LZ")
     left_open = []

@@ -1,37 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How often a step asks the C library for memory, once there were some steps.
-#include <cstddef>
+#include "allocations.hpp"
 
 #include <doctest/doctest.h>
 
 #include "cordon/cordon.hpp"
 #include "cordon/study/data.hpp"
 #include "cordon/study/session.hpp"
-
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-
-namespace {
-thread_local long asked = 0;
-}
-
-extern "C" {
-void* __libc_malloc(std::size_t size);                      // NOLINT: of glibc
-void* __libc_calloc(std::size_t number, std::size_t size);  // NOLINT
-void* __libc_realloc(void* memory, std::size_t size);       // NOLINT
-
-void* malloc(std::size_t size) {
-  ++asked;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t number, std::size_t size) {
-  ++asked;
-  return __libc_calloc(number, size);
-}
-void* realloc(void* memory, std::size_t size) {
-  ++asked;
-  return __libc_realloc(memory, size);
-}
-}
 
 using namespace cordon;
 
@@ -62,11 +37,11 @@ Asked asked_by(const Study& study, const Registry& registry, std::size_t pipelin
   for (int run = 1; run <= runs; ++run) {
     session.start();
     for (std::size_t at = 0; at < samples.size(); ++at) {
-      const long before = asked;
+      const long before = bench::allocations();
       session.step(samples[at], told);
       if (run < runs || at < first) continue;
-      found.most = std::max(found.most, asked - before);
-      found.mean += static_cast<double>(asked - before);
+      found.most = std::max(found.most, bench::allocations() - before);
+      found.mean += static_cast<double>(bench::allocations() - before);
       ++found.steps;
     }
   }
@@ -109,5 +84,3 @@ TEST_CASE("steps with constraints ask for some, hulls included") {
   CHECK(check_each("observer_catalogue", {"constrained_zonotope"}, 40) == 4);
   CHECK(check_each("descriptor_four_representations", {"line_zonotope"}, 60) == 1);
 }
-
-#endif
