@@ -110,6 +110,7 @@ std::string log_line(const GivenLine& given) {
   if (given.request) line.json().member("do", name_of(*given.request));
   if (given.sample) {
     if (given.sample->k) line.json().member("k", *given.sample->k);
+    if (given.sample->t) line.json().member("t", *given.sample->t);
     line.json().member("u", given.sample->u).member("y", given.sample->y);
   }
   return line.text();

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "common.hpp"
 #include "cordon/core/error.hpp"
 #include "file_lock.hpp"
 #include "study/text/json_writer.hpp"
@@ -116,8 +117,10 @@ ReplayedLog::ReplayedLog(const std::filesystem::path& file, const std::string& p
                                       "name that pipeline by \"--pipeline\""}});
 }
 
+bool ReplayedLog::read(std::string& line) { return std::getline(stream_, line) && !stream_.eof(); }
+
 bool ReplayedLog::next(std::string& line) {
-  while (std::getline(stream_, line)) {
+  while (read(line)) {
     if (!is_alarm(line)) return true;
     expected_.push_back(alarm_in(line));
   }
@@ -127,28 +130,36 @@ bool ReplayedLog::next(std::string& line) {
 void ReplayedLog::compare(const std::string& alarm) {
   // Those of a sample stand behind it in the log.
   std::string line;
+  bool has_ended = false;
   while (at_ >= expected_.size()) {
     const auto place = stream_.tellg();
-    if (!std::getline(stream_, line)) break;
+    has_ended = !read(line);
+    if (has_ended) break;
     if (!is_alarm(line)) {
       stream_.seekg(place);
       break;
     }
     expected_.push_back(alarm_in(line));
   }
-  if (at_ < expected_.size() && expected_[at_] == alarm) {
+  if (has_ended) {
+    ++cut_off_;
+    return;
+  }
+  const bool is_expected = at_ < expected_.size();
+  if (is_expected && expected_[at_] == alarm) {
     ++agreed_;
   } else {
     ++others_;
     if (first_difference_.empty()) first_difference_ = alarm;
   }
-  ++at_;
+  if (is_expected) ++at_;
 }
 
 std::vector<std::string> ReplayedLog::differences() const {
   std::vector<std::string> found;
   if (others_ > 0)
-    found.push_back(fmt::format("{} alarm changes are not those of the log; the first: {}", others_,
+    found.push_back(fmt::format("{} {} not as in the log; the first: {}",
+                                count(others_, "alarm change"), others_ == 1 ? "is" : "are",
                                 first_difference_));
   if (at_ < expected_.size())
     found.push_back(

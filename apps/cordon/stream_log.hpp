@@ -45,16 +45,20 @@ class ReplayedLog {
   std::int64_t agreed() const { return agreed_; }
   /// For people; once all has been taken.
   std::vector<std::string> differences() const;
+  /// Alarm changes of the last sample that the log ends before: a kill has cut it there.
+  std::int64_t cut_off() const { return cut_off_; }
 
  private:
   static bool is_alarm(const std::string& line);
   static std::string alarm_in(const std::string& line);
+  /// The next line that has an end.
+  bool read(std::string& line);
 
   std::ifstream stream_;
   std::string waiting_;  ///< a line that has been read
   std::vector<std::string> expected_;
   std::size_t at_ = 0;
-  std::int64_t agreed_ = 0, others_ = 0;
+  std::int64_t agreed_ = 0, others_ = 0, cut_off_ = 0;
   std::string first_difference_;
 };
 

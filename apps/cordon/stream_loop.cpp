@@ -94,6 +94,11 @@ void StreamLoop::run() {
   if (view_) output_.write(view_->last());
   wall_s_ = std::chrono::duration<double>(Clock::now() - begin).count();
   if (replayed_) complaints_ = replayed_->differences();
+  if (replayed_ && replayed_->cut_off() > 0) {
+    warn(fmt::format("the log ends within its last sample: {} of it {} not in it",
+                     count(replayed_->cut_off(), "alarm change"),
+                     replayed_->cut_off() == 1 ? "is" : "are"));
+  }
   keep_record([&] { record_->finish(); });
 }
 

@@ -14,7 +14,7 @@ import json
 from typing import (TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Sequence, Union)
 
 from . import _cordon
-from .arguments import count, wrong_kind
+from .arguments import array, count, wrong_kind
 from .diagnose import Diagnosis
 from .estimate import Estimate
 from .samples import missing_outputs
@@ -113,14 +113,17 @@ class Session:
         self._made = _cordon.Session(checked, checked.pipelines[place])
 
     def take(self, u: "ArrayLike | None", y: "ArrayLike", k: Optional[int] = None,
-             missing: Sequence[int] = ()) -> Taken:
+             missing: Sequence[int] = (), *, t: Optional[float] = None) -> Taken:
         """Takes the input u_k (None: the model has none) and the outputs y_k of time k; None: of
-        the next time. Outputs without a value are named by their indices in `missing`.
+        the next time. Outputs without a value are named by their indices in `missing`. Where the
+        system has a sampling time, `t` may stand in place of k: seconds on the plant's clock, by
+        which k is told from the last sample's.
 
         Raises `Error` for a sample that the rules refuse, and nothing has happened then; an error
         of a component ends the session, as `has_ended` says."""
         time = None if k is None else count(k, "k")
-        told = self._made.take(time, u, y, missing_outputs(missing))
+        seconds = None if t is None else float(array(t, "t", (), "() of a number"))
+        told = self._made.take(time, u, y, missing_outputs(missing), seconds)
         return Taken(told["how"], told["said"], [_step_of(one, self.modes) for one in told["steps"]])
 
     def acknowledge(self) -> List[AlarmChange]:

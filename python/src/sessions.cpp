@@ -60,10 +60,11 @@ class SessionHandle {
           return session;
         })) {}
 
-  py::dict take(std::optional<Index> k, py::handle u, py::handle y, py::handle missing) {
+  py::dict take(std::optional<Index> k, py::handle u, py::handle y, py::handle missing,
+                std::optional<double> t) {
     const Turn turn(busy_);
     const Sample sample = sample_of(0, u, y, missing);
-    const Taken taken = unlocked([&] { return session_.take({k, sample.u, sample.y}); });
+    const Taken taken = unlocked([&] { return session_.take({k, sample.u, sample.y, t}); });
     py::list steps;
     for (const TakenStep& step : taken.steps) steps.append(step_of(step, modes()));
     py::dict made;

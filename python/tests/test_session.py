@@ -74,6 +74,25 @@ def test_rules_for_samples_out_of_order():
                               "filled_steps": 2}
 
 
+def test_times_on_a_clock():
+    timed, numbered = co.Session(tanks(), "levels"), co.Session(tanks(), "levels")
+    for k in (0, 1, 4, 3, 5):  # the tanks are sampled every 5 s
+        one = timed.take([0, 0], [0, 0.001, 0], t=1.7e9 + 5 * k + 0.01 * (-1)**k)
+        two = numbered.take([0, 0], [0, 0.001, 0], k=k)
+        assert (one.how, one.said) == (two.how, two.said)
+        assert [step.k for step in one.steps] == [step.k for step in two.steps]
+    with pytest.raises(co.Error, match="clock_tolerance"):
+        timed.take([0, 0], [0, 0, 0], t=1.7e9 + 33)
+    with pytest.raises(co.Error, match="not of the same time"):
+        timed.take([0, 0], [0, 0, 0], t=1.7e9 + 30, k=7)
+    with pytest.raises(co.Error):
+        timed.take([0, 0], [0, 0, 0], t=math.nan)
+    for wrong in ("noon", True, [1.0], 1j):
+        with pytest.raises((co.ArgumentTypeError, co.ArgumentError), match="^t: "):
+            timed.take([0, 0], [0, 0, 0], t=wrong)
+    assert timed.k == numbered.k == 5
+
+
 def test_alarms_and_states():
     session, other = co.Session(tanks(), "supervision"), co.Session(tanks(), "supervision")
     assert session.modes == ["healthy", "leak in tank 2", "pump 1 weak"]

@@ -133,6 +133,26 @@ TEST_CASE("samples that do not fit are refused, and nothing has happened") {
   CHECK(std::string(cordon_result_json(session, 0)) == cordon_result_json(other, 0));
 }
 
+TEST_CASE("samples have times in seconds where the system has a sampling time") {
+  const std::string rules = R"({"jumps": "fill"})";
+  cordon_session* const session =
+      cordon_open_text(study_with_clock(rules).c_str(), nullptr, "constrained", nullptr);
+  REQUIRE_MESSAGE(session != nullptr, last_error());
+  const double u = 0, y[] = {0, 0};
+  CHECK(cordon_take_at(session, 1.7e9, &u, 1, y, 2) == CORDON_OK);
+  CHECK(cordon_take_at(session, 1.7e9 + 1.5, &u, 1, y, 2) == CORDON_OK);
+  CHECK(cordon_take_how(session) == CORDON_FILLED);
+  CHECK(cordon_last_k(session) == 3);
+  CHECK(cordon_take_at(session, 1.7e9 + 2.2, &u, 1, y, 2) == CORDON_INVALID);
+  CHECK(says("clock_tolerance"));
+  CHECK(cordon_take_at(session, NAN, &u, 1, y, 2) == CORDON_NOT_FINITE);
+  CHECK(cordon_last_k(session) == 3);
+  cordon_close(session);
+  Opened timeless("constrained");
+  CHECK(cordon_take_at(timeless, 0, &u, 1, y, 2) == CORDON_INVALID);
+  CHECK(says("sampling_time"));
+}
+
 TEST_CASE("arrays of another length are refused") {
   Opened session("bank");
   REQUIRE(session.step(sample_of(0, 0, 0)) == CORDON_OK);

@@ -24,7 +24,8 @@ TEST_CASE("the rules are read, and written into the resolved study where they ar
                                    {"longest_gap", 7},
                                    {"late", "correct"},
                                    {"lag", 3},
-                                   {"repeated", "refuse"}});
+                                   {"repeated", "refuse"},
+                                   {"clock_tolerance", 0.01}});
   const Loaded again(resolved.dump());
   CHECK(again.study.resolved == given.study.resolved);
 }
@@ -39,6 +40,10 @@ TEST_CASE("everything that is wrong with the rules is told at once") {
     CHECK(places == std::vector<std::string>{"/online/repeat", "/online/jumps", "/online/late",
                                              "/online/lag"});
     CHECK(std::string(error.what()).find("fill") != std::string::npos);
+  }
+  for (const char* share : {"-0.1", "0.5", "1e300"}) {
+    CHECK_THROWS_WITH_AS(Loaded(std::string("{\"clock_tolerance\": ") + share + "}"),
+                         doctest::Contains("from 0 to below 0.5"), InputError);
   }
   CHECK_THROWS_WITH_AS(Loaded(R"({"longest_gap": 5})"), doctest::Contains("jumps are refused"),
                        InputError);

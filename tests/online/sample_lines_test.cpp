@@ -41,6 +41,25 @@ TEST_CASE("rows of a CSV file are samples, by the names of its columns") {
   CHECK_THROWS_WITH_AS(lines.read("0,3,1,,1\n"), doctest::Contains("u_1"), InputError);
 }
 
+TEST_CASE("samples have times on a clock where the system has a sampling time") {
+  Loaded loaded(study_with_clock(), Loaded::whole);
+  SampleLines json(loaded.study), rows(loaded.study), numbered(loaded.study);
+  const auto sample = json.read(R"({"t": 1.5e9, "u": [0], "y": [0, 0]})").sample;
+  CHECK(sample->t == 1.5e9);
+  CHECK_FALSE(sample->k);
+  CHECK_THROWS_AS(json.read(R"({"t": "noon", "u": [0], "y": [0, 0]})"), InputError);
+  rows.read("t,u_1,y_1,y_2\n");
+  CHECK(rows.read("2.5,0,0,0\n").sample->t == 2.5);
+  CHECK_FALSE(rows.read(",0,0,0\n").sample->t);
+  CHECK_THROWS_WITH_AS(rows.read("2.5s,0,0,0\n"), doctest::Contains("\"t\""), InputError);
+  numbered.read("t,k,u_1,y_1,y_2\n");  // k is enough, and t may be anything
+  CHECK_FALSE(numbered.read("noon,3,0,0,0\n").sample->t);
+  Loaded timeless;
+  SampleLines without(timeless.study);
+  without.read("t,u_1,y_1,y_2\n");
+  CHECK_FALSE(without.read("noon,0,0,0\n").sample->t);
+}
+
 TEST_CASE("all that is wrong with a line is told at once") {
   Loaded loaded;
   SampleLines lines(loaded.study);

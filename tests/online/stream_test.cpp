@@ -159,10 +159,61 @@ TEST_CASE("a log is replayed to the same alarms, and one that was changed is tol
   const test::Outcome other =
       cordon_with(stream + "--replay " + scratch.write("changed", changed).string());
   CHECK(other.code == 4);
-  CHECK(other.complains("not those of the log"));
+  CHECK(other.complains("1 alarm change is not as in the log"));
   CHECK(cordon_with(stream + "--replay " + study).complains("is no log"));
   CHECK(cordon_with("stream " + study + " --pipeline zonotope --replay " + log)
             .complains("another pipeline"));
+}
+
+TEST_CASE("times in seconds are answered, logged and replayed") {
+  const Scratch scratch;
+  const std::string study =
+      scratch.write("study.json", study_with_clock("{\"jumps\": \"fill\"}")).string();
+  const std::string log = (scratch / "log").string();
+  const std::string stream = "stream " + study + " --pipeline zonotope ";
+  const std::string lines =
+      "{\"t\": 1700000000.25, \"u\": [0], \"y\": [0, 0]}\n"
+      "{\"t\": 1700000001.75, \"u\": [0], \"y\": [0, 0]}\n"
+      "{\"t\": 1700000002.1, \"u\": [0], \"y\": [0, 0]}\n";
+  const test::Outcome first =
+      cordon_with(stream + "--log " + log + " < " + scratch.write("in", lines).string());
+  CHECK(first.code == 0);
+  CHECK(first.out.find("\"how\": \"filled\"") != std::string::npos);
+  CHECK(first.out.find("{\"k\": 3, ") != std::string::npos);
+  CHECK(first.out.find("clock_tolerance") != std::string::npos);
+  CHECK(first.complains("1 refused"));
+  const test::Outcome replayed = cordon_with(stream + "--replay " + log);
+  CHECK(replayed.code == 0);
+  CHECK(first.out.starts_with(replayed.out));
+}
+
+TEST_CASE("a log that a kill has cut is replayed as far as it goes") {
+  const Scratch scratch;
+  const std::string study = scratch.write("study.json", study_text()).string();
+  const std::string log = (scratch / "log").string();
+  const std::string stream = "stream " + study + " --pipeline bank ";
+  REQUIRE(
+      cordon_with(stream + "--log " + log + " < " + scratch.write("in", leaking()).string()).code ==
+      0);
+  const std::string whole = bytes_of(log);
+  const std::size_t alarm = whole.find("{\"alarm\"");
+  const std::size_t next = whole.find('\n', alarm) + 1;  // of the same sample
+  const std::pair<std::size_t, const char*> cuts[] = {
+      {alarm, "2 alarm changes"}, {next - 1, "2 alarm changes"}, {next, "1 alarm change"}};
+  for (const auto& [end, left] : cuts) {
+    const test::Outcome replayed =
+        cordon_with(stream + "--replay " + scratch.write("cut", whole.substr(0, end)).string());
+    CHECK(replayed.code == 0);
+    CHECK_MESSAGE(replayed.complains(std::string("within its last sample: ") + left + " of it"),
+                  replayed.err);
+  }
+  // One that is missing in between is told.
+  std::string without = whole;
+  without.erase(alarm, next - alarm);
+  const test::Outcome other =
+      cordon_with(stream + "--replay " + scratch.write("without", without).string());
+  CHECK(other.code == 4);
+  CHECK_MESSAGE(other.complains("alarm changes are not as in the log"), other.err);
 }
 
 TEST_CASE("a stream that is killed goes on from its checkpoint, with no alarm lost or doubled") {

@@ -37,6 +37,12 @@ inline std::string study_text(const std::string& online = "") {
          (online.empty() ? "" : ", \"online\": " + online) + "}";
 }
 
+/// The same, with a sampling time of half a second.
+inline std::string study_with_clock(const std::string& online = "") {
+  std::string text = study_text(online);
+  return text.insert(text.find("\"A\""), "\"sampling_time\": 0.5, ");
+}
+
 /// Registry and study, with the plugins of this build.
 struct Loaded {
   explicit Loaded(const std::string& online = "") : Loaded(study_text(online), whole) {}

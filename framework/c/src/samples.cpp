@@ -17,13 +17,12 @@ Vector given(const double* values, int n, int wanted, const char* what) {
   return Eigen::Map<const Vector>(&c::required(values, what), n);
 }
 
-int take(const char* function, cordon_session* session, std::optional<std::int64_t> k,
-         const double* u, int n_u, const double* y, int n_y) {
+/// `sample` is empty but for its time.
+int take(const char* function, cordon_session* session, GivenSample sample, const double* u,
+         int n_u, const double* y, int n_y) {
   return c::done(function, [&] {
     cordon_session& s = c::session_of(session);
     s.forget();
-    GivenSample sample;
-    sample.k = k;
     sample.u = given(u, n_u, c::count_of(s.names.inputs), "u");
     sample.y = given(y, n_y, c::count_of(s.names.outputs), "y");
     s.take(sample);
@@ -59,11 +58,19 @@ void cordon_session::take(const GivenSample& sample) {
 extern "C" {
 
 int cordon_step(cordon_session* session, const double* u, int n_u, const double* y, int n_y) {
-  return take(__func__, session, {}, u, n_u, y, n_y);
+  return take(__func__, session, GivenSample{}, u, n_u, y, n_y);
 }
 int cordon_take(cordon_session* session, int64_t k, const double* u, int n_u, const double* y,
                 int n_y) {
-  return take(__func__, session, k, u, n_u, y, n_y);
+  GivenSample sample;
+  sample.k = k;
+  return take(__func__, session, std::move(sample), u, n_u, y, n_y);
+}
+int cordon_take_at(cordon_session* session, double t, const double* u, int n_u, const double* y,
+                   int n_y) {
+  GivenSample sample;
+  sample.t = t;
+  return take(__func__, session, std::move(sample), u, n_u, y, n_y);
 }
 
 int cordon_take_how(const cordon_session* session) {

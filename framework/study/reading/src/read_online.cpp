@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/reading/read_parts.hpp"
+#include "study/text/numbers.hpp"
 
 namespace cordon::json {
 
@@ -34,7 +35,7 @@ const std::vector<std::string>& repeat_rule_names() {
 
 OnlineSpec read_online(const Cursor& at) {
   OnlineSpec spec;
-  if (!at.expect_keys({"jumps", "longest_gap", "late", "lag", "repeated"}, "key",
+  if (!at.expect_keys({"jumps", "longest_gap", "late", "lag", "repeated", "clock_tolerance"}, "key",
                       "rules for samples out of order: {\"jumps\": \"fill\", \"late\": "
                       "\"correct\", \"repeated\": \"ignore\"}"))
     return spec;
@@ -48,6 +49,15 @@ OnlineSpec read_online(const Cursor& at) {
   }
   if (const auto lag = at.find("lag"))
     spec.lag = read_integer(*lag, 1, longest_lag).value_or(spec.lag);
+  if (const auto tolerance = at.find("clock_tolerance")) {
+    const double share = read_number(*tolerance).value_or(spec.clock_tolerance);
+    if (share >= 0 && share < 0.5) {
+      spec.clock_tolerance = share;
+    } else {
+      tolerance->error("must be from 0 to below 0.5, and is " + detail::to_text(share),
+                       "what a time may miss its sample's by, as a share of the sampling time");
+    }
+  }
   return spec;
 }
 

@@ -12,6 +12,7 @@ nlohmann::ordered_json resolved_online(const OnlineSpec& spec) {
   online["late"] = late_rule_names()[static_cast<std::size_t>(spec.late)];
   online["lag"] = spec.lag;
   online["repeated"] = repeat_rule_names()[static_cast<std::size_t>(spec.repeated)];
+  online["clock_tolerance"] = spec.clock_tolerance;
   return online;
 }
 

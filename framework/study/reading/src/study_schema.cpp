@@ -335,6 +335,9 @@ Json online() {
                 "samples that late outputs may lie behind the last one");
   properties["repeated"] = described(one_of(json::repeat_rule_names()),
                                      "a sample that brings nothing new: an error, or left out");
+  properties["clock_tolerance"] = described(
+      Json{{"type", "number"}, {"minimum", 0}, {"exclusiveMaximum", 0.5}, {"default", 0.01}},
+      "what the time \"t\" of a sample may miss the plant's by, of a sampling time");
   return object(properties, {});
 }
 

@@ -4,10 +4,13 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "cordon/core/error.hpp"
 #include "cordon/interfaces/archive.hpp"
 #include "cordon/study/online.hpp"
 #include "interfaces/sample_check.hpp"
+#include "sample_clock.hpp"
 #include "study/text/sealed.hpp"
 
 namespace cordon {
@@ -39,14 +42,15 @@ bool contradicts(const Sample& given, const Sample& known) {
 std::string text_of(const OnlineSpec& rules) {
   return std::to_string(static_cast<int>(rules.jumps)) + " " + std::to_string(rules.longest_gap) +
          " " + std::to_string(static_cast<int>(rules.late)) + " " + std::to_string(rules.lag) +
-         " " + std::to_string(static_cast<int>(rules.repeated));
+         " " + std::to_string(static_cast<int>(rules.repeated)) + " " +
+         fmt::format("{}", rules.clock_tolerance);
 }
 
 Vector no_outputs(Index count) {
   return Vector::Constant(count, std::numeric_limits<double>::quiet_NaN());
 }
 
-constexpr const char* saved_online_session = "cordon online session 1";
+constexpr const char* saved_online_session = "cordon online session 2";
 
 }  // namespace
 
@@ -70,7 +74,10 @@ std::string_view to_string(Taken::How how) noexcept {
 class OnlineSession::Intake {
  public:
   Intake(const Study& study, const Registry& registry, const std::string& pipeline)
-      : rules_(study.online), session_(study, registry, pipeline), alarms_(study, session_) {
+      : rules_(study.online),
+        session_(study, registry, pipeline),
+        alarms_(study, session_),
+        clock_(study.labels.sampling_time, rules_.clock_tolerance) {
     if (corrects()) before_ = session_.save();
   }
 
@@ -81,13 +88,17 @@ class OnlineSession::Intake {
                   "anew, or go on from a state that was saved");
     const std::optional<Index> last = session_.last();
     const Index next = last ? *last + 1 : given.k.value_or(0);
-    const Sample sample = detail::sample_of(given.k.value_or(next), given.u, given.y);
+    const Index k = given.t ? clock_.number_of(*given.t, given.k, next) : given.k.value_or(next);
+    const Sample sample = detail::sample_of(k, given.u, given.y);
     if (sample.k < 0 || sample.k > latest)
       throw Error(Errc::invalid, time_of(sample.k) + ": times are 0 to 2^53 - 1");
     detail::check_sample(sample, std::nullopt, session_.model());
     if (sample.k > next) expect_fillable(sample.k, next);
     if (sample.k < next) return again(sample);
-    return changing([&] { return sample.k == next ? on_time(sample) : after_gap(sample, next); });
+    Taken taken =
+        changing([&] { return sample.k == next ? on_time(sample) : after_gap(sample, next); });
+    if (given.t) clock_.took(*given.t, k);
+    return taken;
   }
 
   bool has_ended() const { return ended_ || session_.has_ended(); }
@@ -97,6 +108,7 @@ class OnlineSession::Intake {
     session_.start();
     passed_.clear();
     held_before_.reset();
+    clock_.forget();
     if (corrects()) before_ = session_.save();
     std::vector<AlarmChange> changes = alarms_.begin_anew();
     ended_ = false;
@@ -189,6 +201,7 @@ class OnlineSession::Intake {
     archive(session, before_, passed_, held_before_, counts_.taken, counts_.filled,
             counts_.corrected, counts_.late, counts_.repeated, counts_.filled_steps);
     alarms_.serialize(archive);
+    clock_.serialize(archive);
     if (!archive.is_reading()) return;
     session_.restore(session);
     if (passed_.empty() == session_.last().has_value()) archive.refuse("no sample before");
@@ -316,6 +329,7 @@ class OnlineSession::Intake {
     return taken;
   }
 
+  detail::SampleClock clock_;
   std::deque<Passed> passed_;         ///< the last samples
   std::string before_;                ///< the session as it is, where late outputs correct
   std::optional<Index> held_before_;  ///< as `held`, of the times before these samples

@@ -60,9 +60,13 @@ bool is_missing_field(const std::string& field) {
 class SampleLines::Reader {
  public:
   explicit Reader(const Study& study)
-      : inputs_(study.model.inputs()), outputs_(study.model.outputs()) {
+      : inputs_(study.model.inputs()),
+        outputs_(study.model.outputs()),
+        has_clock_(study.labels.sampling_time > 0) {
     const auto* recorded = std::get_if<CsvSpec>(&study.data);
     const std::vector<std::string> none;
+    t_names_ = {"t"};
+    if (recorded && !recorded->time.empty()) t_names_.push_back(recorded->time);
     u_ = columns_of("u", inputs_, study.labels.inputs, recorded ? recorded->inputs : none);
     y_ = columns_of("y", outputs_, study.labels.outputs, recorded ? recorded->outputs : none);
   }
@@ -121,10 +125,14 @@ class SampleLines::Reader {
     if (problems.any() || !root.expect(Value::Kind::object, "write {\"u\": [...], \"y\": [...]}"))
       return {};
     if (root.find("do")) return {std::nullopt, request_of(root)};
-    root.expect_keys({"k", "u", "y", "do"}, "member", "a sample has \"k\", \"u\" and \"y\"");
+    root.expect_keys({"k", "t", "u", "y", "do"}, "member",
+                     "a sample has \"k\" or \"t\", \"u\" and \"y\"");
     GivenSample sample;
     if (const auto k = root.find("k")) {
       if (const auto number = json::read_integer(*k, 0, json::max_integer)) sample.k = *number;
+    }
+    if (const auto t = root.find("t")) {
+      if (const auto seconds = json::read_number(*t)) sample.t = *seconds;
     }
     sample.u = numbers(root, "u", inputs_, false);
     sample.y = numbers(root, "y", outputs_, true);
@@ -174,6 +182,7 @@ class SampleLines::Reader {
       return;
     }
     k_ = place({"k"}, *names);
+    t_ = has_clock_ && k_ == nowhere ? place(t_names_, *names) : nowhere;
     for (Column& column : u_) find(column, *names, problems);
     for (Column& column : y_) find(column, *names, problems);
     if (!problems.any()) header_ = names->size();
@@ -216,6 +225,8 @@ class SampleLines::Reader {
         sample.k = static_cast<Index>(k);
       }
     }
+    if (t_ != nowhere && !(*fields)[t_].empty())
+      sample.t = number((*fields)[t_], t_names_.back(), problems);
     sample.u = numbers(u_, *fields, false, problems);
     sample.y = numbers(y_, *fields, true, problems);
     return sample;
@@ -240,8 +251,10 @@ class SampleLines::Reader {
   }
 
   Index inputs_, outputs_;
+  bool has_clock_;
+  std::vector<std::string> t_names_;
   std::vector<Column> u_, y_;
-  std::size_t k_ = nowhere;
+  std::size_t k_ = nowhere, t_ = nowhere;
   std::optional<std::size_t> header_;  ///< its number of columns
 };
 

@@ -17,8 +17,11 @@ namespace cordon {
 
 /// A sample as it was sent.
 struct GivenSample {
-  std::optional<Index> k = {};  ///< nothing: the next one
+  std::optional<Index> k = {};  ///< nothing: the next one, or that of t
   Vector u, y;                  ///< an output that is NaN is missing
+  /// Seconds on the plant's clock, for systems with a sampling time: k is told by how long after
+  /// the last sample it was taken. The first one is that of k, or of the next time.
+  std::optional<double> t = {};
 };
 
 /// A step, the sample that it is of, and the alarms that it has changed.
@@ -97,8 +100,8 @@ struct GivenLine {
   std::optional<Request> request = {};
 };
 
-/// Reads lines: JSON objects {"k": 3, "u": [0.5], "y": [1.2, null]} and {"do": "acknowledge"}, or
-/// rows of a CSV file with a header row. Members and columns: docs/online.md.
+/// Reads lines: JSON objects {"k": 3, "u": [0.5], "y": [1.2, null]}, {"t": 15.0, …} and {"do":
+/// "acknowledge"}, or rows of a CSV file with a header row. Members and columns: docs/online.md.
 class SampleLines {
  public:
   explicit SampleLines(const Study& study);

@@ -208,6 +208,7 @@ struct OnlineSpec {
   LateRule late = LateRule::drop;
   std::int64_t lag = 10;  ///< samples that late outputs may lie behind the last one
   RepeatRule repeated = RepeatRule::refuse;
+  double clock_tolerance = 0.01;  ///< of a sampling time, that times may miss the plant's by
 };
 
 /// One axis of a sweep: each of its values takes the place of what stands at `path`, in every place
