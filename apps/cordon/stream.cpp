@@ -35,6 +35,7 @@ Exit run_recorded(const std::filesystem::path& file, const Program& program, boo
 
 Exit run_stream(const Program& program, const StreamArguments& arguments) {
   const std::atomic<bool>* const stop = stop_on_signals();
+  std::atomic<bool>* const acknowledge = acknowledge_on_signal();
   Registry registry;
   registry.load({program.plugins});
   const Study study = read_study(arguments.study, registry, default_search_path(),
@@ -42,7 +43,7 @@ Exit run_stream(const Program& program, const StreamArguments& arguments) {
   if (!arguments.quiet) {
     for (const std::string& warning : study.warnings) warn(warning);
   }
-  StreamLoop loop(study, registry, arguments, stop);
+  StreamLoop loop(study, registry, arguments, stop, acknowledge);
   loop.run();
   if (!arguments.quiet) note(loop.summary());
   for (const std::string& complaint : loop.complaints()) complain(complaint);
@@ -86,7 +87,7 @@ CORDON_COMMAND(stream) {
       "stream", "Take samples from standard input, one line each, and answer each with a line");
   command->footer(
       "SIGINT and SIGTERM end the stream after the sample at hand, as the end of its input does, "
-      "with exit code 0.");
+      "with exit code 0. SIGUSR1 acknowledges all alarms.");
   const auto arguments = std::make_shared<StreamArguments>();
   command->add_option("STUDY", arguments->study, "Study file (JSON); it needs no data")
       ->required()

@@ -22,17 +22,20 @@ bool is_of_the_line(const Error& error) {
 }  // namespace
 
 StreamLoop::StreamLoop(const Study& study, const Registry& registry,
-                       const StreamArguments& arguments, const std::atomic<bool>* stop)
+                       const StreamArguments& arguments, const std::atomic<bool>* stop,
+                       std::atomic<bool>* acknowledge)
     : arguments_(arguments),
       session_(study, registry, arguments.pipeline),
       lines_(study),
       input_(STDIN_FILENO, stop,
              [this] {
+               look_up();
                if (view_) output_.write(view_->idle());
              }),
       output_(STDOUT_FILENO, stop),
       checkpoint_(arguments.checkpoint),
-      stop_(stop) {
+      stop_(stop),
+      acknowledge_(acknowledge) {
   session_.prove_hulls(arguments.sets);
   if (arguments.watch) view_.emplace(study, session_, terminal_size());
   if (!arguments.record.empty())
@@ -106,11 +109,18 @@ void StreamLoop::answer_all() {
   const bool keeps = !arguments_.checkpoint.empty();
   std::string line;
   while (replayed_ ? !*stop_ && replayed_->next(line) : input_.next(line)) {
+    look_up();
     ++line_;
     if (!answer(line)) return;  // nobody has read it: who goes on answers this line again
     if (keeps && since_checkpoint_ >= arguments_.every) save();
   }
   if (keeps) save();
+}
+
+void StreamLoop::look_up() {
+  if (replayed_ || !acknowledge_->exchange(false)) return;
+  output_.write(answer_to({std::nullopt, Request::acknowledge}));
+  if (!arguments_.checkpoint.empty()) save();
 }
 
 template <class Work>

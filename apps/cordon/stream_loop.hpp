@@ -33,7 +33,7 @@ class StreamLoop {
  public:
   /// What the arguments name lives longer.
   StreamLoop(const Study& study, const Registry& registry, const StreamArguments& arguments,
-             const std::atomic<bool>* stop);
+             const std::atomic<bool>* stop, std::atomic<bool>* acknowledge);
 
   /// Until the lines end, nobody reads on, or a signal comes. Throws the errors of components.
   void run();
@@ -51,6 +51,8 @@ class StreamLoop {
   void answer_all();
   /// False: nobody reads on, or a signal came.
   bool answer(const std::string& line);
+  /// Between lines: what signals ask for.
+  void look_up();
   std::string answer_to(const GivenLine& given);
   /// Within the deadline, if there is one.
   Taken take(const GivenSample& sample);
@@ -75,6 +77,7 @@ class StreamLoop {
   std::optional<StreamView> view_;  ///< in place of lines for programs
   Checkpoint checkpoint_;
   const std::atomic<bool>* stop_;
+  std::atomic<bool>* acknowledge_;
   detail::Quantiles latency_us_;
   std::int64_t line_ = 0, refused_ = 0, since_checkpoint_ = 0, unwritten_ = 0, left_open_ = 0;
   std::vector<std::string> complaints_;
