@@ -51,8 +51,8 @@ Exit run_stream(const Program& program, const StreamArguments& arguments) {
     const Exit exit = run_recorded(loop.recorded(), program, arguments.quiet);
     if (exit != Exit::done) return exit;
   }
-  if (loop.complaints().empty()) return Exit::done;
-  return arguments.replay.empty() ? Exit::invalid : Exit::violated;
+  if (loop.differs()) return Exit::violated;
+  return loop.complaints().empty() ? Exit::done : Exit::invalid;
 }
 
 /// Microseconds of "5ms", "200us" or "0.01s"; nothing: it is none.

@@ -25,38 +25,11 @@ class Line {
   detail::JsonWriter json_{sink_};
 };
 
-std::string list_of(const std::vector<AlarmChange>& alarms) {
-  std::string text = "[";
-  for (const AlarmChange& change : alarms) text += (text.size() > 1 ? ", " : "") + json_of(change);
-  return text + "]";
-}
-
 std::string_view name_of(Request request) {
   return request == Request::acknowledge ? "acknowledge" : "start";
 }
 
 }  // namespace
-
-std::string line_of(const TakenStep& step, const Session& session, bool with_set) {
-  std::string text;
-  const EstimateStep* const estimate = step.estimate ? &*step.estimate : nullptr;
-  if (estimate && !estimate->is_last) {
-    text = fmt::format("{{\"k\": null, \"sample\": {}", step.k);
-  } else {
-    text = json_of(step, session.modes());
-    text.pop_back();
-    if (estimate && estimate->estimate.k != step.k) text += fmt::format(", \"sample\": {}", step.k);
-    if (with_set && estimate) text += ", \"set\": " + set_json_of(*estimate, session.name());
-  }
-  if (step.diagnosis && !step.diagnosis->events.empty())
-    text += ", \"events\": " + events_json_of(step.diagnosis->events, session.modes());
-  if (estimate && estimate->restarted) text += ", \"restarted\": true";
-  if (estimate && !estimate->not_enclosed.empty())
-    text += ", \"not_enclosed\": " + detail::json_string(estimate->not_enclosed);
-  if (step.left_open) text += ", \"left_open\": true";
-  if (!step.alarms.empty()) text += ", \"alarms\": " + list_of(step.alarms);
-  return text + "}\n";
-}
 
 std::string line_of(const Taken& taken, std::int64_t number) {
   Line line;
@@ -67,7 +40,7 @@ std::string line_of(const Taken& taken, std::int64_t number) {
 
 std::string line_of(Request request, const std::vector<AlarmChange>& alarms) {
   Line line;
-  line.json().member("did", name_of(request)).key("alarms").raw(list_of(alarms));
+  line.json().member("did", name_of(request)).key("alarms").raw(json_of(alarms));
   return line.text();
 }
 

@@ -10,8 +10,6 @@
 
 namespace cordon::apps {
 
-/// The line of a step: the step itself, and what else there is to say of it.
-std::string line_of(const TakenStep& step, const Session& session, bool with_set);
 /// What became of a sample that was not simply the next one.
 std::string line_of(const Taken& taken, std::int64_t line);
 /// Alarms that change by a request.

@@ -46,6 +46,12 @@ StreamLog::StreamLog(std::filesystem::path file, const std::string& pipeline, st
     throw InputError(file_.string(), {{"", "is not the log that the checkpoint was written with",
                                        "name the log that belongs to it"}});
   }
+  if (detail::is_there(file_) && !std::filesystem::is_regular_file(file_)) {
+    throw InputError(file_.string(), {{"",
+                                       "is no regular file, and cannot be cut where a stream "
+                                       "goes on",
+                                       "name a file"}});
+  }
   if (keep == 0 && detail::is_there(file_) && std::filesystem::file_size(file_) > head.size()) {
     throw InputError(file_.string(), {{"", "exists already",
                                        "name the checkpoint that belongs to it by "

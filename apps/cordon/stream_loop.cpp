@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common.hpp"
 #include "cordon/solvers/limits.hpp"
@@ -91,18 +92,23 @@ void StreamLoop::run() {
   try {
     answer_all();
   } catch (...) {
-    keep_record([&] { record_->finish(); });
+    finish_record();
     throw;
   }
   if (view_) output_.write(view_->last());
   wall_s_ = std::chrono::duration<double>(Clock::now() - begin).count();
-  if (replayed_) complaints_ = replayed_->differences();
+  if (replayed_) {
+    for (std::string& difference : replayed_->differences()) {
+      complaints_.push_back(std::move(difference));
+      differs_ = true;
+    }
+  }
   if (replayed_ && replayed_->cut_off() > 0) {
     warn(fmt::format("the log ends within its last sample: {} of it {} not in it",
                      count(replayed_->cut_off(), "alarm change"),
                      replayed_->cut_off() == 1 ? "is" : "are"));
   }
-  keep_record([&] { record_->finish(); });
+  finish_record();
 }
 
 void StreamLoop::answer_all() {
@@ -134,8 +140,12 @@ void StreamLoop::keep_record(Work&& work) {
   }
 }
 
-std::filesystem::path StreamLoop::recorded() const {
-  return record_ && record_->has_samples() ? record_->study() : std::filesystem::path();
+void StreamLoop::finish_record() {
+  keep_record([&] {
+    record_->finish();
+    if (record_->has_samples()) recorded_ = record_->study();
+  });
+  record_.reset();
 }
 
 template <class Work>
@@ -165,6 +175,7 @@ bool StreamLoop::answer(const std::string& line) {
     const GivenLine given = lines_.read(line);
     if (!given.sample && !given.request) {
       const bool is_header = line.find_first_not_of(" \t\r") != std::string::npos;
+      if (is_header) tell_of_header();
       if (restored_ && is_header) --line_;  // it came again, and was counted before
       restored_ = restored_ && !is_header;
       return true;
@@ -182,6 +193,13 @@ bool StreamLoop::answer(const std::string& line) {
   return true;
 }
 
+void StreamLoop::tell_of_header() const {
+  const std::vector<std::string> names = lines_.passed_over();
+  if (lines_.have_times() || names.empty() || arguments_.quiet) return;
+  warn(fmt::format("no column \"k\" or \"t\": each row is taken for the next time; passed over: {}",
+                   fmt::join(names, ", ")));
+}
+
 std::string StreamLoop::answer_to(const GivenLine& given) {
   std::string text;
   std::vector<AlarmChange> changes;
@@ -189,10 +207,11 @@ std::string StreamLoop::answer_to(const GivenLine& given) {
     changes = session_.acknowledge();
     text = view_ ? view_->show(changes) : line_of(*given.request, changes);
   } else if (given.request) {
-    if (record_)
-      throw Error(Errc::invalid,
-                  "a stream that is recorded does not begin anew; end it, and start "
-                  "another one");
+    if (record_ && record_->has_samples()) {
+      finish_record();
+      complaints_.push_back(
+          "the record ends where the stream begins anew; later samples are not in it");
+    }
     changes = session_.start();
     text = view_ ? view_->begin_anew() + view_->show(changes) : line_of(*given.request, changes);
   }
@@ -220,7 +239,7 @@ std::string StreamLoop::answer_to(const Taken& taken) {
   for (const TakenStep& step : taken.steps) {
     keep(step.alarms);
     left_open_ += step.left_open;
-    if (!view_) text += line_of(step, session_.session(), arguments_.sets);
+    if (!view_) text += line_json_of(step, session_.session(), arguments_.sets) + "\n";
   }
   return view_ ? view_->show(taken) : text;
 }
@@ -240,7 +259,8 @@ std::string StreamLoop::summary() const {
     if (number > 0) text += fmt::format(", {} {}", number, what);
   };
   text += counts_text(counts, refused_);
-  add(left_open_, "with questions that limits of work have left open");
+  add(left_open_, left_open_ == 1 ? "step in which limits of work have left questions open"
+                                  : "steps in which limits of work have left questions open");
   add(unwritten_, "not written");
   const std::size_t alarms = session_.alarms().size();
   if (alarms > 0) text += fmt::format(", {} alarm{}", alarms, alarms == 1 ? " stands" : "s stand");

@@ -40,9 +40,11 @@ class StreamLoop {
   /// Counts and times, for people.
   std::string summary() const;
   /// The study that was recorded; empty: none, or not all of it.
-  std::filesystem::path recorded() const;
-  /// Of a log: alarms that are not those in it.
+  const std::filesystem::path& recorded() const { return recorded_; }
+  /// What was asked for and is not there, as the record of some samples.
   const std::vector<std::string>& complaints() const { return complaints_; }
+  /// Has a log other alarms?
+  bool differs() const { return differs_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -51,6 +53,7 @@ class StreamLoop {
   void answer_all();
   /// False: nobody reads on, or a signal came.
   bool answer(const std::string& line);
+  void tell_of_header() const;
   /// Between lines: what signals ask for.
   void look_up();
   std::string answer_to(const GivenLine& given);
@@ -65,6 +68,8 @@ class StreamLoop {
   /// What ends the record does not end the stream.
   template <class Work>
   void keep_record(Work&& work);
+  /// Samples that follow are not in it.
+  void finish_record();
 
   const StreamArguments& arguments_;
   OnlineSession session_;
@@ -80,6 +85,8 @@ class StreamLoop {
   std::atomic<bool>* acknowledge_;
   detail::Quantiles latency_us_;
   std::int64_t line_ = 0, refused_ = 0, since_checkpoint_ = 0, unwritten_ = 0, left_open_ = 0;
+  std::filesystem::path recorded_;
+  bool differs_ = false;
   std::vector<std::string> complaints_;
   bool restored_ = false;  ///< and no line has come since
   double wall_s_ = 0;

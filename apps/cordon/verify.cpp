@@ -241,7 +241,7 @@ Exit verify(VerifyArguments& arguments) {
   if (outcome.second_opinion && !outcome.second_opinion->first_unanswered.empty())
     warn("no second opinion, " + outcome.second_opinion->first_unanswered);
   if (const std::int64_t open = undecided(outcome); open > 0) {
-    complain(fmt::format("{} checks could not be decided; all others hold", open));
+    complain(count(open, "check") + " could not be decided; all others hold");
     return Exit::unanswered;
   }
   const bool any = std::any_of(

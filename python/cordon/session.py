@@ -16,6 +16,7 @@ from typing import (TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Sequen
 from . import _cordon
 from .arguments import array, count, wrong_kind
 from .diagnose import Diagnosis
+from .errors import ArgumentError
 from .estimate import Estimate
 from .samples import missing_outputs
 from .written import study_of
@@ -69,6 +70,8 @@ class SessionStep(NamedTuple):
     not_enclosed: str
     #: Limits of work have left questions open.
     left_open: bool
+    #: The seconds that the sample came with.
+    t: Optional[float] = None
 
 
 class Taken(NamedTuple):
@@ -96,7 +99,7 @@ def _step_of(told: Dict[str, Any], modes: List[str]) -> SessionStep:
         Diagnosis(diagnosis, modes) if diagnosis is not None else None,
         json.loads(told.get("events", "[]")), [_change_of(one) for one in told["alarms"]],
         told.get("left_out", []), told.get("contradiction"), told.get("restarted", False),
-        told.get("not_enclosed", ""), told["left_open"])
+        told.get("not_enclosed", ""), told["left_open"], told["t"])
 
 
 class Session:
@@ -107,8 +110,12 @@ class Session:
     time; other threads run on while it computes.
     """
 
-    def __init__(self, study: "Study", pipeline: Union[str, int] = 0) -> None:
-        place = study_of(study).index_of(pipeline)
+    def __init__(self, study: "Study", pipeline: Union[str, int, None] = None) -> None:
+        names = study_of(study).pipelines
+        if pipeline is None and len(names) > 1:
+            raise ArgumentError("pipeline: the study has several, name one of "
+                                f"{', '.join(map(repr, names))}")
+        place = study.index_of(0 if pipeline is None else pipeline)
         checked = study.checked(needs_data=False)
         self._made = _cordon.Session(checked, checked.pipelines[place])
 
@@ -117,7 +124,7 @@ class Session:
         """Takes the input u_k (None: the model has none) and the outputs y_k of time k; None: of
         the next time. Outputs without a value are named by their indices in `missing`. Where the
         system has a sampling time, `t` may stand in place of k: seconds on the plant's clock, by
-        which k is told from the last sample's.
+        which k is told from the last sample's. Of both, k counts, and the clock is set.
 
         Raises `Error` for a sample that the rules refuse, and nothing has happened then; an error
         of a component ends the session, as `has_ended` says."""

@@ -33,6 +33,7 @@ py::dict step_of(const TakenStep& step, const std::vector<std::string>& modes) {
   py::dict made;
   made["k"] = step.k;
   made["left_open"] = step.left_open;
+  made["t"] = step.t;
   made["alarms"] = json_of_all(step.alarms);
   if (const auto& found = step.estimate) {
     if (found->is_last) {

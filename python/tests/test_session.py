@@ -83,14 +83,14 @@ def test_times_on_a_clock():
         assert [step.k for step in one.steps] == [step.k for step in two.steps]
     with pytest.raises(co.Error, match="clock_tolerance"):
         timed.take([0, 0], [0, 0, 0], t=1.7e9 + 33)
-    with pytest.raises(co.Error, match="not of the same time"):
-        timed.take([0, 0], [0, 0, 0], t=1.7e9 + 30, k=7)
+    set_anew = timed.take([0, 0], [0, 0.001, 0], t=12.5, k=6).steps[0]  # the clock was set
+    assert set_anew.t == 12.5 and timed.take([0, 0], [0, 0.001, 0], t=17.5).steps[0].k == 7
     with pytest.raises(co.Error):
         timed.take([0, 0], [0, 0, 0], t=math.nan)
     for wrong in ("noon", True, [1.0], 1j):
         with pytest.raises((co.ArgumentTypeError, co.ArgumentError), match="^t: "):
             timed.take([0, 0], [0, 0, 0], t=wrong)
-    assert timed.k == numbered.k == 5
+    assert timed.k == 7
 
 
 def test_alarms_and_states():
@@ -149,7 +149,9 @@ def test_wrong_arguments():
     with pytest.raises(co.ArgumentTypeError):
         co.Session("study.json")
     with pytest.raises(co.InputError, match="designs an input"):
-        co.Session(co.Study(REPOSITORY / "examples/studies/active_diagnosis_two_tanks.json"))
+        co.Session(co.Study(REPOSITORY / "examples/studies/active_diagnosis_two_tanks.json"), 0)
+    with pytest.raises(co.ArgumentError, match="several, name one of 'supervision', 'levels'"):
+        co.Session(tanks())
 
 
 def test_limits_of_work_are_said(examples):

@@ -114,7 +114,7 @@ TEST_CASE("NULL in place of a session is refused everywhere") {
   std::size_t size = 0;
   const int codes[] = {cordon_step(no, &number, 1, &number, 1),
                        cordon_take(no, 0, &number, 1, &number, 1),
-                       cordon_take_at(no, 0, &number, 1, &number, 1),
+                       cordon_take_at(no, 0, 0, &number, 1, &number, 1),
                        cordon_reset(no),
                        cordon_result_bounds(no, 0, &bound, &bound, 1),
                        cordon_result_candidates(no, 0, &flag, 1),

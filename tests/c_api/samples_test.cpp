@@ -139,17 +139,22 @@ TEST_CASE("samples have times in seconds where the system has a sampling time") 
       cordon_open_text(study_with_clock(rules).c_str(), nullptr, "constrained", nullptr);
   REQUIRE_MESSAGE(session != nullptr, last_error());
   const double u = 0, y[] = {0, 0};
-  CHECK(cordon_take_at(session, 1.7e9, &u, 1, y, 2) == CORDON_OK);
-  CHECK(cordon_take_at(session, 1.7e9 + 1.5, &u, 1, y, 2) == CORDON_OK);
+  CHECK(cordon_take_at(session, CORDON_NONE, 1.7e9, &u, 1, y, 2) == CORDON_OK);
+  CHECK(cordon_take_at(session, CORDON_NONE, 1.7e9 + 1.5, &u, 1, y, 2) == CORDON_OK);
   CHECK(cordon_take_how(session) == CORDON_FILLED);
   CHECK(cordon_last_k(session) == 3);
-  CHECK(cordon_take_at(session, 1.7e9 + 2.2, &u, 1, y, 2) == CORDON_INVALID);
+  CHECK(cordon_take_at(session, CORDON_NONE, 1.7e9 + 2.2, &u, 1, y, 2) == CORDON_INVALID);
   CHECK(says("clock_tolerance"));
-  CHECK(cordon_take_at(session, NAN, &u, 1, y, 2) == CORDON_NOT_FINITE);
+  CHECK(cordon_take_at(session, CORDON_NONE, NAN, &u, 1, y, 2) == CORDON_NOT_FINITE);
   CHECK(cordon_last_k(session) == 3);
+  CHECK(cordon_take_at(session, 4, 17, &u, 1, y, 2) == CORDON_OK);  // the clock was set
+  CHECK(std::string(cordon_result_json(session, 0)).find("\"t\": 17") != std::string::npos);
+  CHECK(cordon_take_at(session, CORDON_NONE, 17.5, &u, 1, y, 2) == CORDON_OK);
+  CHECK(cordon_last_k(session) == 5);
+  CHECK(cordon_take_at(session, -2, 18, &u, 1, y, 2) == CORDON_INVALID);
   cordon_close(session);
   Opened timeless("constrained");
-  CHECK(cordon_take_at(timeless, 0, &u, 1, y, 2) == CORDON_INVALID);
+  CHECK(cordon_take_at(timeless, CORDON_NONE, 0, &u, 1, y, 2) == CORDON_INVALID);
   CHECK(says("sampling_time"));
 }
 

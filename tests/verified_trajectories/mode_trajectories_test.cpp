@@ -198,6 +198,25 @@ TEST_CASE("two states that are told apart by rows alone") {
   }
 }
 
+TEST_CASE("an actuator drives all rows by the same effectiveness") {
+  // x1⁺ = f u, x2⁺ = x1 - x2 + f u with f ∈ [.4, .6] and u = 1, from 0: x1 = x2 after one step.
+  Model model;
+  LinearModel& m = model.linear;
+  m.A = Matrix{{0, 0}, {1, -1}};
+  m.B = Matrix{{1}, {1}};
+  m.C = Matrix{{1, 0}};
+  m.D = Matrix::Zero(1, 1);
+  m.Bw = Matrix(2, 0);
+  m.Dv = Matrix(1, 0);
+  m.actuator = {Vector{{.4}}, Vector{{.6}}};
+  model.W = model.V = make_point(Vector(0));
+  ModeTrajectories proofs(model, make_point(Vector::Zero(2)), {});
+  for (Index k = 0; k < 3; ++k) proofs.step(missing_outputs({k, Vector{{1.}}, Vector{{0.}}}, {0}));
+  CHECK(proofs.proves_bound(1, 1, .6 + 1e-12));
+  CHECK(proofs.proves_bound(1, -1, .4 - 1e-12));
+  CHECK_FALSE(proofs.proves_bound(1, 1, .6 - 1e-9));
+}
+
 TEST_CASE("that a linear model holds is told to be open where the state may leave its region") {
   Model model;
   LinearModel& m = model.linear;

@@ -150,11 +150,11 @@ int cordon_step(cordon_session* session, const double* u, int n_u, const double*
  * another: none, one or several results come out. The first one is of any time. */
 int cordon_take(cordon_session* session, int64_t k, const double* u, int n_u, const double* y,
                 int n_y);
-/* The same of a sample whose time is known in seconds on the plant's clock, for studies with a
- * "sampling_time": k is told by how long after the last one it was taken. The first one is that of
- * time 0. What misses a whole number of sampling times is refused (CORDON_INVALID). */
-int cordon_take_at(cordon_session* session, double t, const double* u, int n_u, const double* y,
-                   int n_y);
+/* The same of a sample that was taken at t seconds on the plant's clock. With a k of CORDON_NONE,
+ * in studies with a "sampling_time", k is told by how long after the last one that was: what misses
+ * a whole number of sampling times is refused (CORDON_INVALID). With a k the clock is set. */
+int cordon_take_at(cordon_session* session, int64_t k, double t, const double* u, int n_u,
+                   const double* y, int n_y);
 /* What became of the last sample, a cordon_how; CORDON_NONE: there was none. */
 int cordon_take_how(const cordon_session* session);
 /* The rule that was followed, in words; "" for CORDON_TAKEN. */

@@ -44,22 +44,6 @@ const DiagnosisEvent& event_of(const cordon_session* session, int result, int ev
   return c::entry(events_of(c::result_of(session, result).step), event, "event");
 }
 
-/// A line of `cordon stream`, without alarms.
-std::string json_text(const cordon_session& session, const SessionStep& step) {
-  const std::vector<std::string>& modes = session.online.session().modes();
-  const std::string sample = R"(, "sample": )" + std::to_string(step.k);
-  const bool waits = step.estimate && !step.estimate->is_last;
-  std::string text = waits ? R"({"k": null)" : json_of(step, modes);
-  if (!waits) text.pop_back();
-  if (step.estimate && (waits || step.estimate->estimate.k != step.k)) text += sample;
-  if (!events_of(step).empty()) text += R"(, "events": )" + events_json_of(events_of(step), modes);
-  if (step.estimate && step.estimate->restarted) text += R"(, "restarted": true)";
-  if (step.estimate && !step.estimate->not_enclosed.empty())
-    text += R"(, "not_enclosed": )" + detail::json_string(step.estimate->not_enclosed);
-  if (step.left_open) text += R"(, "left_open": true)";
-  return text + "}";
-}
-
 /// A text that is made when it is asked for first.
 template <class Make>
 const char* made(std::string& text, Make&& make) {
@@ -142,7 +126,7 @@ int cordon_result_candidates(const cordon_session* session, int result, int* can
 const char* cordon_result_json(cordon_session* session, int result) {
   return c::got(__func__, "", [&] {
     c::Result& of = c::result_of(session, result);
-    return made(of.json, [&] { return json_text(*session, of.step); });
+    return made(of.json, [&] { return line_json_of(of.step, session->online.session()); });
   });
 }
 

@@ -66,9 +66,10 @@ int cordon_take(cordon_session* session, int64_t k, const double* u, int n_u, co
   sample.k = k;
   return take(__func__, session, std::move(sample), u, n_u, y, n_y);
 }
-int cordon_take_at(cordon_session* session, double t, const double* u, int n_u, const double* y,
-                   int n_y) {
+int cordon_take_at(cordon_session* session, int64_t k, double t, const double* u, int n_u,
+                   const double* y, int n_y) {
   GivenSample sample;
+  if (k != CORDON_NONE) sample.k = k;
   sample.t = t;
   return take(__func__, session, std::move(sample), u, n_u, y, n_y);
 }

@@ -15,7 +15,7 @@ namespace cordon::c {
 
 /// A step with the texts and bounds that were asked for.
 struct Result {
-  SessionStep step;
+  TakenStep step;                ///< without its alarms
   std::optional<Box> hull = {};  ///< of a diagnoser's estimate
   std::string json = {};
   std::vector<std::string> event_json = {};

@@ -5,6 +5,7 @@
 #include "study/results/diagnosis_json.hpp"
 #include "study/results/results_parts.hpp"
 #include "study/results/step_json.hpp"
+#include "study/text/numbers.hpp"
 #include "study/text/string_sink.hpp"
 
 namespace cordon {
@@ -54,6 +55,33 @@ std::string json_of(const AlarmChange& change) {
   }
   json.end_object();
   return std::move(text.text);
+}
+
+std::string line_json_of(const TakenStep& step, const Session& session, bool with_set) {
+  const EstimateStep* const estimate = step.estimate ? &*step.estimate : nullptr;
+  const bool waits = estimate && !estimate->is_last;
+  std::string text = waits ? "{\"k\": null" : json_of(step, session.modes());
+  if (!waits) text.pop_back();
+  const auto add = [&](const char* name, const std::string& content) {
+    text += std::string(", \"") + name + "\": " + content;
+  };
+  if (estimate && (waits || estimate->estimate.k != step.k)) add("sample", std::to_string(step.k));
+  if (step.t) add("t", detail::to_text(*step.t));
+  if (with_set && estimate && !waits) add("set", set_json_of(*estimate, session.name()));
+  if (step.diagnosis && !step.diagnosis->events.empty())
+    add("events", events_json_of(step.diagnosis->events, session.modes()));
+  if (estimate && estimate->restarted) add("restarted", "true");
+  if (estimate && !estimate->not_enclosed.empty())
+    add("not_enclosed", detail::json_string(estimate->not_enclosed));
+  if (step.left_open) add("left_open", "true");
+  if (!step.alarms.empty()) add("alarms", json_of(step.alarms));
+  return text + "}";
+}
+
+std::string json_of(const std::vector<AlarmChange>& changes) {
+  std::string text = "[";
+  for (const AlarmChange& change : changes) text += (text.size() > 1 ? ", " : "") + json_of(change);
+  return text + "]";
 }
 
 std::string set_json_of(const EstimateStep& step, const std::string& pipeline) {

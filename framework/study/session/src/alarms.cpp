@@ -220,11 +220,13 @@ void Alarms::settle(AlarmCause cause, const std::optional<Alarm>& now, Index ons
     told.is_active = now->is_active;
   };
   if (at == standing_.end()) {
-    if (!now || (onsets == 0 && !lasts)) return;  // acknowledged and gone: no news
+    const bool was_told = onsets == 0;  // what was told and has left was acknowledged
+    if (!now || (was_told && !lasts)) return;
     Alarm& alarm = standing_.emplace_back(*now);
-    alarm.acknowledged = false;
+    alarm.acknowledged = was_told;
     alarm.times = std::max<Index>(onsets, 1);
-    changes.push_back({AlarmChange::What::raised, last_, alarm});
+    changes.push_back(
+        {was_told ? AlarmChange::What::again : AlarmChange::What::raised, last_, alarm});
     if (!lasts) changes.push_back({AlarmChange::What::passed, last_, alarm});
     return;
   }

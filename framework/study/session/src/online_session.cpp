@@ -88,15 +88,16 @@ class OnlineSession::Intake {
                   "anew, or go on from a state that was saved");
     const std::optional<Index> last = session_.last();
     const Index next = last ? *last + 1 : given.k.value_or(0);
-    const Index k = given.t ? clock_.number_of(*given.t, given.k, next) : given.k.value_or(next);
+    const Index k = clock_.number_of(given.t, given.k, next);
     const Sample sample = detail::sample_of(k, given.u, given.y);
     if (sample.k < 0 || sample.k > latest)
       throw Error(Errc::invalid, time_of(sample.k) + ": times are 0 to 2^53 - 1");
     detail::check_sample(sample, std::nullopt, session_.model());
     if (sample.k > next) expect_fillable(sample.k, next);
-    if (sample.k < next) return again(sample);
-    Taken taken =
-        changing([&] { return sample.k == next ? on_time(sample) : after_gap(sample, next); });
+    if (sample.k < next) return again(sample, given.t);
+    Taken taken = changing([&] {
+      return sample.k == next ? on_time(sample, given.t) : after_gap(sample, given.t, next);
+    });
     if (given.t) clock_.took(*given.t, k);
     return taken;
   }
@@ -151,7 +152,8 @@ class OnlineSession::Intake {
     bool is_filled = false;   ///< its input is that of the sample before, and may have been another
     std::string before = {};  ///< the session before it; "" where nothing can be corrected
     std::vector<Alarm> alarms = {};  ///< before it, likewise
-    void serialize(Archive& archive) { archive(sample, is_filled, before, alarms); }
+    std::optional<double> t = {};
+    void serialize(Archive& archive) { archive(sample, is_filled, before, alarms, t); }
   };
 
   bool corrects() const { return rules_.late == LateRule::correct; }
@@ -212,16 +214,17 @@ class OnlineSession::Intake {
     }
   }
 
-  Taken on_time(const Sample& sample) {
+  Taken on_time(const Sample& sample, std::optional<double> t) {
     Taken taken;
-    step(sample, taken);
+    step(sample, taken, false, t);
     ++counts_.taken;
     return taken;
   }
 
-  void step(const Sample& sample, Taken& taken, bool is_filled = false) {
-    taken.steps.push_back({session_.step(sample), sample});
-    passed_.push_back({sample, is_filled, std::exchange(before_, {})});
+  void step(const Sample& sample, Taken& taken, bool is_filled, std::optional<double> t) {
+    taken.steps.push_back({session_.step(sample), sample, t});
+    passed_.push_back(
+        {.sample = sample, .is_filled = is_filled, .before = std::exchange(before_, {}), .t = t});
     if (passed_.size() > static_cast<std::size_t>(rules_.lag) + 1) {
       if (passed_.front().is_filled) held_before_ = passed_.front().sample.k;
       passed_.pop_front();
@@ -237,13 +240,14 @@ class OnlineSession::Intake {
     if (rules_.jumps == JumpRule::refuse)
       throw Error(Errc::invalid, jump(k, next) +
                                      "it is refused; with \"jumps\": \"fill\" in /online the times "
-                                     "between are taken without outputs");
+                                     "between are taken without outputs; otherwise begin anew");
     if (k - next > rules_.longest_gap)
       throw Error(Errc::invalid, jump(k, next) + "it is refused, as more than \"longest_gap\": " +
-                                     std::to_string(rules_.longest_gap) + " times are missing");
+                                     std::to_string(rules_.longest_gap) +
+                                     " times are missing: begin anew, or allow longer gaps");
   }
 
-  Taken after_gap(const Sample& sample, Index next) {
+  Taken after_gap(const Sample& sample, std::optional<double> t, Index next) {
     const Index gap = sample.k - next;
     Taken taken{Taken::How::filled,
                 jump(sample.k, next) + std::to_string(gap) +
@@ -251,15 +255,15 @@ class OnlineSession::Intake {
                     " taken without outputs, and with the input of the sample before"};
     const Vector u = passed_.back().sample.u;
     for (Index k = next; k < sample.k; ++k)
-      step(detail::sample_of(k, u, no_outputs(sample.y.size())), taken, true);
-    step(sample, taken);
+      step(detail::sample_of(k, u, no_outputs(sample.y.size())), taken, true, {});
+    step(sample, taken, false, t);
     ++counts_.filled;
     counts_.filled_steps += gap;
     return taken;
   }
 
   /// A time that has passed.
-  Taken again(const Sample& sample) {
+  Taken again(const Sample& sample, std::optional<double> t) {
     const Index first = passed_.empty() ? *session_.last() + 1 : passed_.front().sample.k;
     if (sample.k < first) {
       ++counts_.late;
@@ -275,7 +279,7 @@ class OnlineSession::Intake {
       throw Error(Errc::invalid, time_of(sample.k) + " was taken with other values: it is refused");
     const std::vector<Index> news = news_in(sample, known);
     if (news.empty() && !other_input) return repeated(at);
-    if (corrects()) return changing([&] { return corrected(at, sample, news); });
+    if (corrects()) return changing([&] { return corrected(at, sample, t, news); });
     ++counts_.late;
     if (other_input) {
       return {Taken::How::late,
@@ -303,7 +307,8 @@ class OnlineSession::Intake {
     return {Taken::How::repeated, time_of(k) + " was taken already: it is left out", {}};
   }
 
-  Taken corrected(std::size_t at, const Sample& sample, const std::vector<Index>& news) {
+  Taken corrected(std::size_t at, const Sample& sample, std::optional<double> t,
+                  const std::vector<Index>& news) {
     Taken taken{Taken::How::corrected,
                 time_of(sample.k) +
                     " was taken without what has come now: it is taken again, and "
@@ -317,12 +322,13 @@ class OnlineSession::Intake {
     merged.u = sample.u;
     passed_[at].sample = std::move(merged);
     passed_[at].is_filled = false;
+    if (!passed_[at].t) passed_[at].t = t;
     for (std::size_t i = at + 1; i < passed_.size() && passed_[i].is_filled; ++i)
       passed_[i].sample.u = sample.u;  // which they have held
     session_.restore(passed_[at].before);
     for (std::size_t i = at; i < passed_.size(); ++i) {
       if (i > at) passed_[i].before = session_.save();
-      taken.steps.push_back({session_.step(passed_[i].sample), passed_[i].sample});
+      taken.steps.push_back({session_.step(passed_[i].sample), passed_[i].sample, passed_[i].t});
     }
     before_ = session_.save();
     ++counts_.corrected;

@@ -13,14 +13,15 @@ namespace cordon::detail {
 /// a little faster or slower than the plant's, and jitter by `tolerance` of a sampling time.
 class SampleClock {
  public:
-  /// `sampling_time` 0: it is not known, and no sample may have a time.
+  /// `sampling_time` 0: it is not known, and times tell nothing.
   SampleClock(double sampling_time, double tolerance)
       : sampling_time_(sampling_time), tolerance_(tolerance) {}
 
-  /// `k` is what the sample says itself; `next` is what it is while no time is known.
-  /// Throws Errc::invalid or Errc::not_finite for what fits no number.
-  Index number_of(double t, std::optional<Index> k, Index next) const;
+  /// What a sample is that was sent with these: k, else what its time tells, else `next`. Throws
+  /// Errc::invalid or Errc::not_finite for a time that fits no number.
+  Index number_of(std::optional<double> t, std::optional<Index> k, Index next) const;
 
+  /// A sample of time t was that of k.
   void took(double t, Index k) { last_ = Last{t, k}; }
   void forget() { last_.reset(); }
   void serialize(Archive& archive);

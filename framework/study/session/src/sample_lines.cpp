@@ -65,8 +65,8 @@ class SampleLines::Reader {
         has_clock_(study.labels.sampling_time > 0) {
     const auto* recorded = std::get_if<CsvSpec>(&study.data);
     const std::vector<std::string> none;
-    t_names_ = {"t"};
-    if (recorded && !recorded->time.empty()) t_names_.push_back(recorded->time);
+    t_names_ = {"t", "t [s]", "time", "time [s]"};
+    if (recorded && !recorded->time.empty()) t_names_.insert(t_names_.begin(), recorded->time);
     u_ = columns_of("u", inputs_, study.labels.inputs, recorded ? recorded->inputs : none);
     y_ = columns_of("y", outputs_, study.labels.outputs, recorded ? recorded->outputs : none);
   }
@@ -88,6 +88,19 @@ class SampleLines::Reader {
     if (problems.any()) throw InputError("sample", helped(problems.sorted()));
     return given;
   }
+
+  std::vector<std::string> passed_over() const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; header_ && i < header_->size(); ++i) {
+      const auto is_it = [i](const Column& column) { return column.at == i; };
+      const bool is_used =
+          i == k_ || i == t_ || std::ranges::any_of(u_, is_it) || std::ranges::any_of(y_, is_it);
+      if (!is_used) names.push_back((*header_)[i]);
+    }
+    return names;
+  }
+
+  bool have_times() const { return !header_ || k_ != nowhere || t_ != nowhere; }
 
  private:
   /// Programs write NaN for what is missing.
@@ -181,11 +194,32 @@ class SampleLines::Reader {
       problems.add("", 0, "the header row has quotes that do not end");
       return;
     }
+    if (std::ranges::all_of(*names, is_value)) {
+      problems.add("", 0, "is a row of numbers, and no header row has named its columns",
+                   "the first row has the names, such as " + names_of_all());
+      return;
+    }
     k_ = place({"k"}, *names);
     t_ = has_clock_ && k_ == nowhere ? place(t_names_, *names) : nowhere;
     for (Column& column : u_) find(column, *names, problems);
     for (Column& column : y_) find(column, *names, problems);
-    if (!problems.any()) header_ = names->size();
+    if (problems.any() && text.find_first_of(";\t") != std::string_view::npos)
+      problems.add("", 0, "has \";\" or tabs", "columns are separated by commas");
+    if (!problems.any()) header_ = *names;
+  }
+
+  static bool is_value(const std::string& field) {
+    return is_missing_field(field) || detail::parse_number(field).problem.empty();
+  }
+
+  /// u_1,y_1,y_2
+  std::string names_of_all() const {
+    std::string text;
+    for (const auto* columns : {&u_, &y_}) {
+      for (const Column& column : *columns)
+        text += (text.empty() ? "" : ",") + column.names.front();
+    }
+    return text;
   }
 
   static std::size_t place(const std::vector<std::string>& names,
@@ -202,16 +236,24 @@ class SampleLines::Reader {
     if (column.at != nowhere) return;
     const std::vector<std::string> some(
         header.begin(), header.begin() + std::min<std::ptrdiff_t>(30, std::ssize(header)));
-    problems.add("", 0, "there is no column " + in_quotes(column.names.back()) + " in the header",
+    problems.add("", 0,
+                 "there is no column " + in_quotes(column.names.front()) + or_another(column) +
+                     " in the header",
                  suggest(column.names.back(), some));
+  }
+
+  /// Its other name.
+  static std::string or_another(const Column& column) {
+    const std::string& other = column.names.back();
+    return other == column.names.front() ? "" : " or " + in_quotes(other);
   }
 
   std::optional<GivenSample> from_row(std::string_view text, Problems& problems) const {
     const auto fields = fields_of(text);
-    if (!fields || fields->size() != *header_) {
+    if (!fields || fields->size() != header_->size()) {
       problems.add("", 0,
                    fields ? "the row has " + json::counted(std::ssize(*fields), "field") +
-                                ", the header " + std::to_string(*header_)
+                                ", the header " + std::to_string(header_->size())
                           : "the row has quotes that do not end",
                    "each row has a field for each column, also where it is empty");
       return std::nullopt;
@@ -226,7 +268,7 @@ class SampleLines::Reader {
       }
     }
     if (t_ != nowhere && !(*fields)[t_].empty())
-      sample.t = number((*fields)[t_], t_names_.back(), problems);
+      sample.t = number((*fields)[t_], (*header_)[t_], problems);
     sample.u = numbers(u_, *fields, false, problems);
     sample.y = numbers(y_, *fields, true, problems);
     return sample;
@@ -255,7 +297,7 @@ class SampleLines::Reader {
   std::vector<std::string> t_names_;
   std::vector<Column> u_, y_;
   std::size_t k_ = nowhere, t_ = nowhere;
-  std::optional<std::size_t> header_;  ///< its number of columns
+  std::optional<std::vector<std::string>> header_;
 };
 
 SampleLines::SampleLines(const Study& study) : reader_(std::make_unique<Reader>(study)) {}
@@ -263,5 +305,7 @@ SampleLines::~SampleLines() = default;
 SampleLines::SampleLines(SampleLines&&) noexcept = default;
 SampleLines& SampleLines::operator=(SampleLines&&) noexcept = default;
 GivenLine SampleLines::read(std::string_view line) { return reader_->read(line); }
+std::vector<std::string> SampleLines::passed_over() const { return reader_->passed_over(); }
+bool SampleLines::have_times() const { return reader_->have_times(); }
 
 }  // namespace cordon

@@ -30,12 +30,27 @@ Interval effectiveness(const Box& range, Index i) {
 
 Interval point(double x) { return {x, x}; }
 
-/// B diag(f) u of one row.
+/// B diag(f) u of one row, of one input.
+Interval driven(const Matrix& B, const Matrix& radius, const Box& actuator, VectorIn u, Index i,
+                Index j) {
+  return u[j] * (entry(B, radius, i, j) * effectiveness(actuator, j));
+}
+/// Of all of them.
 Interval driven(const Matrix& B, const Matrix& radius, const Box& actuator, VectorIn u, Index i) {
   Interval sum = point(0);
-  for (Index j = 0; j < u.size(); ++j)
-    sum = sum + u[j] * (entry(B, radius, i, j) * effectiveness(actuator, j));
+  for (Index j = 0; j < u.size(); ++j) sum = sum + driven(B, radius, actuator, u, i, j);
   return sum;
+}
+
+bool has_range(const Box& actuator, Index j) {
+  return actuator.dim() > 0 && actuator.lower[j] < actuator.upper[j];
+}
+
+/// [b] u f - slope f over a range, and the slope.
+Interval spread(Interval b, double u, Interval range, double& slope) {
+  const Interval by = u * b;
+  slope = by.is_point() ? by.lower : 0.5 * by.lower + 0.5 * by.upper;
+  return (by + point(-slope)) * range;
 }
 
 /// [row] x - slopes x over the box, and the slopes: the middles.
@@ -61,12 +76,23 @@ Interval others(const Matrix& slopes, Index i, const Box& x, const Box& noise, I
   return sum;
 }
 
+Vector one_after_other(const Vector& x, const Vector& y) {
+  Vector both(x.size() + y.size());
+  both << x, y;
+  return both;
+}
+
 bool is_defined(Interval x) { return x.lower > -infinity || x.upper < infinity; }
 
 }  // namespace
 
 ModeEnclosure::ModeEnclosure(const Model& model)
     : model_(model), W_(outward::interval_hull(model.W)), V_(outward::interval_hull(model.V)) {
+  const Box& actuator = model.linear.actuator;
+  for (Index j = 0; model.is_linear() && j < actuator.dim(); ++j)
+    if (has_range(actuator, j)) ranged_.push_back(j);
+  driving_ = {one_after_other(W_.lower, actuator.lower(ranged_)),
+              one_after_other(W_.upper, actuator.upper(ranged_))};
   if (model.is_linear()) return;
   const NonlinearModel& own = *model.nonlinear;
   constexpr auto form = formulas::AffineForm::convex_differences;
@@ -113,14 +139,21 @@ EnclosedRows rows_of_size(Index rows, Index left, Index states, Index noises) {
 EnclosedRows ModeEnclosure::linear_successors(const Box& x, const Sample& now) const {
   const LinearModel& m = model_.linear;
   const Index n = m.states();
-  EnclosedRows made = rows_of_size(n, n, n, m.disturbances());
+  EnclosedRows made = rows_of_size(n, n, n, driving_.dim());
   made.left = m.is_descriptor() ? m.E : Matrix(Matrix::Identity(n, n));
-  made.slopes.rightCols(m.disturbances()) = m.Bw;
+  made.slopes.middleCols(n, m.disturbances()) = m.Bw;
   std::vector<Interval> row(as_size(n));
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < n; ++j) row[as_size(j)] = entry(m.A, m.A_radius, i, j);
-    made.rest[as_size(i)] =
-        spread(row, x, made.slopes, i) + driven(m.B, m.B_radius, m.actuator, now.u, i);
+    Interval rest = spread(row, x, made.slopes, i);
+    Index column = n + m.disturbances();
+    for (Index j = 0; j < now.u.size(); ++j) {
+      rest =
+          rest + (has_range(m.actuator, j) ? spread(entry(m.B, m.B_radius, i, j), now.u[j],
+                                                    side(m.actuator, j), made.slopes(i, column++))
+                                           : driven(m.B, m.B_radius, m.actuator, now.u, i, j));
+    }
+    made.rest[as_size(i)] = rest;
   }
   return made;
 }
@@ -168,7 +201,7 @@ Box ModeEnclosure::reached(const EnclosedRows& rows, const Box& x) const {
   Box hull = Box::space(n);
   if (model_.is_linear() && model_.linear.is_descriptor()) return hull;
   for (Index i = 0; i < n; ++i) {
-    Interval sum = others(rows.slopes, i, x, W_, -1) + rows.rest[as_size(i)];
+    Interval sum = others(rows.slopes, i, x, driving_, -1) + rows.rest[as_size(i)];
     if (!model_.is_linear()) sum = intersected(sum, formulas_->f.range(i));
     hull.lower[i] = sum.lower;
     hull.upper[i] = sum.upper;

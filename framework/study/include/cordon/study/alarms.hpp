@@ -110,5 +110,7 @@ class Alarms {
 /// {"what", "k", "cause", "raised_at", "since", "times", "active", "acknowledged", "text",
 /// "proof"}.
 std::string json_of(const AlarmChange& change);
+/// A list of these.
+std::string json_of(const std::vector<AlarmChange>& changes);
 
 }  // namespace cordon

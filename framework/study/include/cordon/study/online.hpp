@@ -19,14 +19,15 @@ namespace cordon {
 struct GivenSample {
   std::optional<Index> k = {};  ///< nothing: the next one, or that of t
   Vector u, y;                  ///< an output that is NaN is missing
-  /// Seconds on the plant's clock, for systems with a sampling time: k is told by how long after
-  /// the last sample it was taken. The first one is that of k, or of the next time.
+  /// Seconds on the plant's clock. Where k is not given they tell it, in systems with a sampling
+  /// time: by how long after the last sample it was taken. Where both are, the clock is set.
   std::optional<double> t = {};
 };
 
 /// A step, the sample that it is of, and the alarms that it has changed.
 struct TakenStep : SessionStep {
   Sample sample = {};
+  std::optional<double> t = {};  ///< with which it was sent
   std::vector<AlarmChange> alarms = {};
 };
 
@@ -112,18 +113,26 @@ class SampleLines {
   /// What the line holds, whose end may be part of it; neither of the two: the header, or an empty
   /// line. Throws InputError with all that is wrong with it.
   GivenLine read(std::string_view line);
+  /// Columns of the header that tell nothing; none without one.
+  std::vector<std::string> passed_over() const;
+  /// Do rows say which times they are of, by k or by t? Without a header nothing is known: true.
+  bool have_times() const;
 
  private:
   class Reader;
   std::unique_ptr<Reader> reader_;
 };
 
-/// A step as `steps` of results.json has it, without metrics and true values: {"k": 3, "hull": …}.
+/// A step as `steps` of results.json has it, without metrics, true values and events:
+/// {"k": 3, "hull": …}.
 std::string json_of(const SessionStep& step, const std::vector<std::string>& modes);
 /// A list of events as results.json has them.
 std::string events_json_of(const std::vector<DiagnosisEvent>& events,
                            const std::vector<std::string>& modes);
 /// Its set as a line of sets.jsonl has it, without the end; of an estimate with `is_last`.
 std::string set_json_of(const EstimateStep& step, const std::string& pipeline);
+
+/// All of it as a line of `cordon stream`, without its end: {"k": 3, …, "events": …, "alarms": …}.
+std::string line_json_of(const TakenStep& step, const Session& session, bool with_set = false);
 
 }  // namespace cordon

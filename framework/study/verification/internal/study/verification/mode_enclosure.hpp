@@ -38,7 +38,8 @@ class ModeEnclosure {
   /// of it explains the sample, which is proven.
   bool contract(Box& x, const Sample& now);
 
-  const Box& disturbances() const { return W_; }
+  /// Of w, and of the effectiveness of each actuator that has a range: one number in all rows.
+  const Box& disturbances() const { return driving_; }
   const Box& noises() const { return V_; }
 
  private:
@@ -53,7 +54,9 @@ class ModeEnclosure {
   std::vector<Index> rows_of(const Sample& now) const;
 
   const Model& model_;
-  Box W_, V_;  ///< hulls
+  Box W_, V_;                  ///< hulls
+  std::vector<Index> ranged_;  ///< actuators with a range
+  Box driving_;
   std::optional<Formulas> formulas_;
 };
 
