@@ -310,6 +310,32 @@ TEST_CASE("an earlier cause that comes late is told, though a later one was ackn
   for (const AlarmChange& change : told) CHECK_FALSE(change.alarm.acknowledged);
 }
 
+TEST_CASE("an alarm that was acknowledged and gone stays acknowledged where it lasts after all") {
+  OnTank on("observer");
+  Alarms alarms(on.loaded.study, on.session.session());
+  const auto step = [](Index k, Answer consistent) {
+    SessionStep made;
+    made.k = k;
+    made.estimate.emplace();
+    made.estimate->estimate.k = k;
+    made.estimate->estimate.consistent = consistent;
+    return made;
+  };
+  REQUIRE(alarms.step(step(0, Answer::no))[0].what == What::raised);
+  REQUIRE(alarms.acknowledge()[0].what == What::acknowledged);
+  for (Index k = 1; k < 40; ++k) CHECK(alarms.step(step(k, Answer::no)).empty());
+  std::vector<Alarm> before = alarms.standing();
+  REQUIRE(alarms.step(step(40, Answer::yes))[0].what == What::gone);
+  const SessionStep late = step(40, Answer::no);
+  const auto told = alarms.retake({{&late, {}, &before}});
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].what == What::again);
+  CHECK(told[0].alarm.acknowledged);
+  CHECK(told[0].alarm.raised_at == 0);
+  CHECK(alarms.step(step(41, Answer::yes))[0].what == What::gone);
+  CHECK(alarms.standing().empty());
+}
+
 TEST_CASE("alarms with outputs that come late are in the end those of outputs that came in time") {
   int active = 0, corrected = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {

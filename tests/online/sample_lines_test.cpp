@@ -48,7 +48,10 @@ TEST_CASE("samples have times on a clock where the system has a sampling time") 
   CHECK(sample->t == 1.5e9);
   CHECK_FALSE(sample->k);
   CHECK_THROWS_AS(json.read(R"({"t": "noon", "u": [0], "y": [0, 0]})"), InputError);
+  CHECK(rows.have_times());  // nothing is known yet
   rows.read("t,u_1,y_1,y_2\n");
+  CHECK(rows.have_times());
+  CHECK(rows.passed_over().empty());
   CHECK(rows.read("2.5,0,0,0\n").sample->t == 2.5);
   CHECK_FALSE(rows.read(",0,0,0\n").sample->t);
   CHECK_THROWS_WITH_AS(rows.read("2.5s,0,0,0\n"), doctest::Contains("\"t\""), InputError);
@@ -58,6 +61,32 @@ TEST_CASE("samples have times on a clock where the system has a sampling time") 
   SampleLines without(timeless.study);
   without.read("t,u_1,y_1,y_2\n");
   CHECK_FALSE(without.read("noon,0,0,0\n").sample->t);
+}
+
+TEST_CASE("columns of times have some names, and others are told to be passed over") {
+  Loaded loaded(study_with_clock(), Loaded::whole);
+  for (const char* name : {"t", "t [s]", "time", "time [s]"}) {
+    SampleLines rows(loaded.study);
+    rows.read(std::string("u_1,y_1,y_2,") + name);
+    CHECK(rows.read("0,0,0,2.5").sample->t == 2.5);
+  }
+  SampleLines rows(loaded.study);
+  rows.read("stamp,u_1,y_1,note,y_2");
+  CHECK_FALSE(rows.have_times());
+  CHECK(rows.passed_over() == std::vector<std::string>{"stamp", "note"});
+}
+
+TEST_CASE("what is no header row says so") {
+  Loaded loaded;
+  SampleLines lines(loaded.study);
+  const auto refused = [&](const char* line, const char* because) {
+    CHECK_THROWS_WITH_AS(lines.read(line), doctest::Contains(because), InputError);
+  };
+  refused("0.5,1,2", "no header row has named its columns");
+  refused("0.5,,nan", "such as u_1,y_1,y_2");
+  refused("u_1;y_1;y_2", "separated by commas");
+  refused("u_1\ty_1\ty_2", "separated by commas");
+  refused("hello", "no column \"u_1\"");
 }
 
 TEST_CASE("all that is wrong with a line is told at once") {
