@@ -136,7 +136,7 @@ void complain(const std::string& text) {
 }
 
 std::string path_problem(const std::string& text) {
-  return text.empty() ? "the name is empty; name a directory" : "";
+  return text.empty() ? "the name is empty" : "";
 }
 
 std::filesystem::path as_operand(const std::filesystem::path& path) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <csignal>
+#include <fcntl.h>
 #include <iostream>
 #include <memory>
 #include <sstream>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 
@@ -48,6 +50,16 @@ std::string unknown_options(const CLI::App& app) {
             option + "\"; " + cordon::suggest(option, known);
   }
   return text;
+}
+
+/// Those that were closed stay unusable: no file that is opened later gets their numbers.
+void keep_standard_streams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(descriptor, F_GETFD) >= 0) continue;
+    // the lowest number that is free: reads and writes fail as before
+    [[maybe_unused]] const int placed =
+        ::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
 }
 
 /// The help of all, or of one command.
@@ -125,6 +137,7 @@ Exit run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_standard_streams();
   std::signal(
       SIGPIPE,
       SIG_IGN);  // a reader that leaves is an error code of write, not the end of the process

@@ -4,22 +4,27 @@
 #include "cordon/interfaces/archive.hpp"
 #include "study/text/atomic_directory.hpp"
 #include "study/text/json_text.hpp"
+#include "study/text/publish.hpp"
 #include "study/text/sealed.hpp"
 
 namespace cordon::apps {
 
 namespace {
 
-constexpr const char* name_of_file = "cordon checkpoint 1";
+constexpr const char* name_of_file = "cordon checkpoint 2";
 
 void serialize(CheckpointState& state, Archive& archive) {
-  archive(state.session, state.lines, state.log_bytes);
-  if (state.lines < 0 || state.log_bytes < 0) archive.refuse("a negative length");
+  archive(state.session, state.lines, state.log_bytes, state.log_lost);
+  if (state.lines < 0 || state.log_bytes < 0 || state.log_lost < 0)
+    archive.refuse("a negative length");
 }
 
 }  // namespace
 
 Checkpoint::Checkpoint(std::filesystem::path file) : file_(std::move(file)) {
+  if (std::filesystem::is_symlink(file_)) file_ = std::filesystem::weakly_canonical(file_);
+  if (detail::is_there(file_) && !std::filesystem::is_regular_file(file_))
+    throw InputError(file_.string(), {{"", "is no regular file", "name a file"}});
   if (!file_.empty()) lock_.emplace(beside(".lock"), file_);
 }
 

@@ -15,6 +15,7 @@ struct CheckpointState {
   std::string session = {};    ///< of OnlineSession::save
   std::int64_t lines = 0;      ///< that had been read
   std::int64_t log_bytes = 0;  ///< of the log, which may have grown since
+  std::int64_t log_lost = 0;   ///< its last lines that could not be written
 };
 
 class Checkpoint {

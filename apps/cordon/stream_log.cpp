@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stream_log.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -19,7 +20,7 @@ namespace cordon::apps {
 
 namespace {
 
-constexpr std::string_view before_alarm = "{\"alarm\": ";
+constexpr std::string_view before_alarm = "{\"alarm\": ", before_lost = "{\"lost\": ";
 
 std::string head_of(const std::string& pipeline) {
   return "{\"cordon_log\": 1, \"pipeline\": " + detail::json_string(pipeline) + "}";
@@ -39,42 +40,52 @@ bool is_of(const std::filesystem::path& file, const std::string& head, std::int6
 
 }  // namespace
 
-StreamLog::StreamLog(std::filesystem::path file, const std::string& pipeline, std::int64_t keep)
-    : file_(std::move(file)) {
+StreamLog::StreamLog(std::filesystem::path file, const std::string& pipeline, std::int64_t keep,
+                     std::int64_t lost)
+    : file_(std::move(file)), lost_(lost) {
   const std::string head = head_of(pipeline) + "\n";
-  if (detail::is_there(file_) && !is_of(file_, head, keep)) {
-    throw InputError(file_.string(), {{"", "is not the log that the checkpoint was written with",
-                                       "name the log that belongs to it"}});
-  }
-  if (detail::is_there(file_) && !std::filesystem::is_regular_file(file_)) {
-    throw InputError(file_.string(), {{"",
-                                       "is no regular file, and cannot be cut where a stream "
-                                       "goes on",
-                                       "name a file"}});
-  }
-  if (keep == 0 && detail::is_there(file_) && std::filesystem::file_size(file_) > head.size()) {
-    throw InputError(file_.string(), {{"", "exists already",
-                                       "name the checkpoint that belongs to it by "
-                                       "\"--checkpoint\", or move it away to begin anew"}});
-  }
-  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  const auto refuse = [&](const char* what, const char* what_to_do) {
+    throw InputError(file_.string(), {{"", what, what_to_do}});
+  };
+  if (detail::is_there(file_) && !std::filesystem::is_regular_file(file_))
+    refuse("is no regular file, and cannot be cut where a stream goes on", "name a file");
+  if (detail::is_there(file_) && !is_of(file_, head, keep))
+    refuse("is not the log that the checkpoint was written with",
+           "name the log that belongs to it");
+  if (keep == 0 && detail::is_there(file_) && std::filesystem::file_size(file_) > head.size())
+    refuse("exists already",
+           "name the checkpoint that belongs to it by \"--checkpoint\", or move it away to begin "
+           "anew");
+  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor_ < 0)
+    throw Error(Errc::io, fmt::format("{}: {}", file_.string(), std::strerror(errno)));
   try {
-    if (descriptor_ >= 0) lock(descriptor_, file_);
+    lock(descriptor_, file_);
+    if (keep > 0 && ::lseek(descriptor_, 0, SEEK_END) < keep)
+      refuse("is shorter than it was at the checkpoint", "name the log that belongs to it");
+    cut_off(keep);
+    if (keep == 0) append(head);
   } catch (const Error&) {
     ::close(descriptor_);
     throw;
   }
-  const bool is_long_enough =
-      descriptor_ >= 0 && (keep == 0 || ::lseek(descriptor_, 0, SEEK_END) >= keep);
-  if (descriptor_ >= 0 && !is_long_enough) {
-    ::close(descriptor_);
-    throw InputError(file_.string(), {{"", "is shorter than it was at the checkpoint",
-                                       "name the log that belongs to it"}});
+}
+
+/// Of what is behind nothing is lost.
+void StreamLog::cut_off(std::int64_t keep) {
+  const std::int64_t behind = keep > 0 ? ::lseek(descriptor_, 0, SEEK_END) - keep : 0;
+  if (behind > 0) {
+    std::string text(static_cast<std::size_t>(behind), 0);
+    const std::filesystem::path beside = file_.string() + ".cut";
+    std::ofstream out(beside, std::ios::binary | std::ios::app);
+    const bool is_kept = ::pread(descriptor_, text.data(), text.size(), keep) == behind &&
+                         out.write(text.data(), behind).flush();
+    if (!is_kept) throw Error(Errc::io, beside.string() + ": cannot be written");
+    cut_ = behind;
   }
-  if (descriptor_ < 0 || ::ftruncate(descriptor_, keep) != 0)
+  if (::ftruncate(descriptor_, keep) != 0)
     throw Error(Errc::io, fmt::format("{}: {}", file_.string(), std::strerror(errno)));
   bytes_ = keep;
-  if (keep == 0) write(head);
 }
 
 StreamLog::~StreamLog() {
@@ -82,9 +93,17 @@ StreamLog::~StreamLog() {
 }
 
 void StreamLog::write(const std::string& line) {
+  ++lost_;  // unless it is written
+  if (lost_ > 1) append(std::string(before_lost) + std::to_string(lost_ - 1) + "}\n");
+  lost_ = std::min<std::int64_t>(lost_, 1);
+  append(line);
+  lost_ = 0;
+}
+
+void StreamLog::append(const std::string& text) {
   std::size_t done = 0;
-  while (done < line.size()) {
-    const ssize_t count = ::write(descriptor_, line.data() + done, line.size() - done);
+  while (done < text.size()) {
+    const ssize_t count = ::write(descriptor_, text.data() + done, text.size() - done);
     if (count >= 0) {
       done += static_cast<std::size_t>(count);
     } else if (errno != EINTR) {
@@ -93,7 +112,7 @@ void StreamLog::write(const std::string& line) {
       throw Error(Errc::io, fmt::format("{}: {}", file_.string(), std::strerror(reason)));
     }
   }
-  bytes_ += static_cast<std::int64_t>(line.size());
+  bytes_ += static_cast<std::int64_t>(text.size());
 }
 
 void StreamLog::flush() {
@@ -112,10 +131,13 @@ std::string ReplayedLog::alarm_in(const std::string& line) {
   return line.substr(before_alarm.size(), line.size() - before_alarm.size() - 1);
 }
 
-ReplayedLog::ReplayedLog(const std::filesystem::path& file, const std::string& pipeline)
-    : stream_(file, std::ios::binary) {
+ReplayedLog::ReplayedLog(const std::filesystem::path& file, const std::string& pipeline) {
   std::string first;
-  if (!stream_ || !std::getline(stream_, first) || !first.starts_with("{\"cordon_log\": 1, "))
+  if (!detail::is_there(file))
+    throw InputError(file.string(), {{"", "there is no such file", "name a log"}});
+  if (std::filesystem::is_regular_file(file)) stream_.open(file, std::ios::binary);
+  if (!stream_.is_open() || !std::getline(stream_, first) ||
+      !first.starts_with("{\"cordon_log\": 1, "))
     throw InputError(file.string(),
                      {{"", "is no log of a stream", "name a file that \"--log\" has written"}});
   if (first != head_of(pipeline))
@@ -123,7 +145,12 @@ ReplayedLog::ReplayedLog(const std::filesystem::path& file, const std::string& p
                                       "name that pipeline by \"--pipeline\""}});
 }
 
-bool ReplayedLog::read(std::string& line) { return std::getline(stream_, line) && !stream_.eof(); }
+bool ReplayedLog::read(std::string& line) {
+  if (lacks_lines_ || !std::getline(stream_, line)) return false;
+  torn_ = stream_.eof();
+  lacks_lines_ = !torn_ && line.starts_with(before_lost);
+  return !torn_ && !lacks_lines_;
+}
 
 bool ReplayedLog::next(std::string& line) {
   while (read(line)) {

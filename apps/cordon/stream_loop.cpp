@@ -39,6 +39,12 @@ StreamLoop::StreamLoop(const Study& study, const Registry& registry,
       acknowledge_(acknowledge) {
   session_.prove_hulls(arguments.sets);
   if (arguments.watch) view_.emplace(study, session_, terminal_size());
+  if (!arguments.record.empty() && !arguments.log.empty() &&
+      std::filesystem::weakly_canonical(arguments.log).parent_path() ==
+          std::filesystem::weakly_canonical(arguments.record)) {
+    throw InputError(arguments.log.string(),
+                     {{"", "is in the directory of the record", "name a file elsewhere"}});
+  }
   if (!arguments.record.empty())
     record_.emplace(arguments.record, study, session_.session().name());
   if (!arguments.replay.empty()) replayed_.emplace(arguments.replay, session_.session().name());
@@ -73,7 +79,11 @@ bool StreamLoop::restore() {
     restored_ = true;
   }
   if (!arguments_.log.empty())
-    log_.emplace(arguments_.log, session_.session().name(), state ? state->log_bytes : 0);
+    log_.emplace(arguments_.log, session_.session().name(), state ? state->log_bytes : 0,
+                 state ? state->log_lost : 0);
+  if (log_ && log_->cut() > 0 && !arguments_.quiet)
+    warn(fmt::format("{} bytes that {} has beyond the checkpoint are in {}.cut now", log_->cut(),
+                     arguments_.log.string(), arguments_.log.string()));
   if (!state) {  // a log and its checkpoint are there together; whoever cannot be saved is told so
     save();
     return true;
@@ -87,7 +97,8 @@ bool StreamLoop::restore() {
 
 void StreamLoop::run() {
   if (!restore()) return;
-  if (!arguments_.log.empty() && !log_) log_.emplace(arguments_.log, session_.session().name(), 0);
+  if (!arguments_.log.empty() && !log_)
+    log_.emplace(arguments_.log, session_.session().name(), 0, 0);
   const Clock::time_point begin = Clock::now();
   try {
     answer_all();
@@ -97,18 +108,26 @@ void StreamLoop::run() {
   }
   if (view_) output_.write(view_->last());
   wall_s_ = std::chrono::duration<double>(Clock::now() - begin).count();
-  if (replayed_) {
-    for (std::string& difference : replayed_->differences()) {
-      complaints_.push_back(std::move(difference));
-      differs_ = true;
-    }
-  }
-  if (replayed_ && replayed_->cut_off() > 0) {
-    warn(fmt::format("the log ends within its last sample: {} of it {} not in it",
-                     count(replayed_->cut_off(), "alarm change"),
-                     replayed_->cut_off() == 1 ? "is" : "are"));
-  }
+  if (replayed_) judge_replay();
   finish_record();
+}
+
+void StreamLoop::judge_replay() {
+  std::vector<std::string> differences = replayed_->differences();
+  if (refused_ > 0)
+    differences.push_back(count(refused_, "line") + " of the log refused, which were taken then");
+  differs_ = !differences.empty();
+  complaints_.insert(complaints_.end(), differences.begin(), differences.end());
+  if (replayed_->lacks_lines())
+    complaints_.push_back(
+        "the log lacks lines, which could not be written then: it is replayed up to there");
+  if (*stop_) complaints_.push_back("the replay was interrupted");
+  if (const std::int64_t alarms = replayed_->cut_off(); alarms > 0) {
+    warn(fmt::format("the log ends within its last sample: {} of it {} not in it",
+                     count(alarms, "alarm change"), alarms == 1 ? "is" : "are"));
+  } else if (replayed_->is_torn()) {
+    warn("the log's last line is cut off: it is left out");
+  }
 }
 
 void StreamLoop::answer_all() {
@@ -162,7 +181,7 @@ void StreamLoop::save() {
   since_checkpoint_ = 0;
   written("the checkpoint was not written", [&] {
     if (log_) log_->flush();
-    checkpoint_.write({session_.save(), line_, log_ ? log_->bytes() : 0});
+    checkpoint_.write({session_.save(), line_, log_ ? log_->bytes() : 0, log_ ? log_->lost() : 0});
   });
 }
 

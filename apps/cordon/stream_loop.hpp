@@ -51,6 +51,8 @@ class StreamLoop {
 
   bool restore();
   void answer_all();
+  /// What is said of it in the end.
+  void judge_replay();
   /// False: nobody reads on, or a signal came.
   bool answer(const std::string& line);
   void tell_of_header() const;

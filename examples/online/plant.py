@@ -43,7 +43,7 @@ class Tanks:
 
 
 def lines(steps, leak, dropouts, seed):
-    """(k, lines that are sent then): the sample of k, perhaps without outputs, and late ones."""
+    """(k, samples that are sent then): that of k, perhaps without outputs, and late ones."""
     tanks, chance = Tanks(leak, seed), random.Random(seed + 1)
     late, down_until = [], -1
     for k in range(steps):
@@ -57,7 +57,12 @@ def lines(steps, leak, dropouts, seed):
         if k > down_until:
             now += [sample for due, sample in late if due <= k]
             late = [(due, sample) for due, sample in late if due > k]
-        yield k, [json.dumps(sample) for sample in now]
+        yield k, now
+
+
+def with_time(sample, begin):
+    """Seconds in place of k, on a clock that runs 50 ppm fast."""
+    return {"t": begin + 5 * 1.00005 * sample["k"], "u": sample["u"], "y": sample["y"]}
 
 
 def main():
@@ -68,14 +73,17 @@ def main():
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--skip", type=int, default=0, help="lines that were taken already [0]")
     options.add_argument("--every", type=float, default=0, help="seconds between samples [0]")
+    options.add_argument("--clock", type=float, help="send seconds in place of k, from this time on")
     given = options.parse_args()
     try:
         count = 0
         for _, sent in lines(given.steps, given.leak, given.dropouts, given.seed):
-            for line in sent:
+            for sample in sent:
+                if given.clock is not None:
+                    sample = with_time(sample, given.clock)
                 count += 1
                 if count > given.skip:
-                    print(line, flush=True)
+                    print(json.dumps(sample), flush=True)
             if count > given.skip:
                 time.sleep(given.every)
     except (BrokenPipeError, KeyboardInterrupt):

@@ -30,7 +30,13 @@ std::vector<Index> missing_of(py::handle given) {
       throw py::type_error("missing: indices of outputs are needed, as [0], not " +
                            py::repr(one).cast<std::string>());
     }
-    missing.push_back(py::reinterpret_steal<py::object>(PyNumber_Index(one.ptr())).cast<Index>());
+    const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(one.ptr()));
+    const Index at = number ? PyLong_AsSsize_t(number.ptr()) : -1;
+    if (PyErr_Occurred()) {
+      PyErr_Clear();
+      throw py::index_error("missing: there is no output " + py::repr(one).cast<std::string>());
+    }
+    missing.push_back(at);
   }
   std::sort(missing.begin(), missing.end());
   missing.erase(std::unique(missing.begin(), missing.end()), missing.end());

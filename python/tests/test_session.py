@@ -87,6 +87,8 @@ def test_times_on_a_clock():
     assert set_anew.t == 12.5 and timed.take([0, 0], [0, 0.001, 0], t=17.5).steps[0].k == 7
     with pytest.raises(co.Error):
         timed.take([0, 0], [0, 0, 0], t=math.nan)
+    with pytest.raises(IndexError, match="missing: there is no output 1000"):
+        timed.take([0, 0], [0, 0, 0], missing=[10**30])
     for wrong in ("noon", True, [1.0], 1j):
         with pytest.raises((co.ArgumentTypeError, co.ArgumentError), match="^t: "):
             timed.take([0, 0], [0, 0, 0], t=wrong)

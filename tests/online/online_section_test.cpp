@@ -25,7 +25,8 @@ TEST_CASE("the rules are read, and written into the resolved study where they ar
                                    {"late", "correct"},
                                    {"lag", 3},
                                    {"repeated", "refuse"},
-                                   {"clock_tolerance", 0.01}});
+                                   {"clock_tolerance", 0.01},
+                                   {"clock_drift", 0.001}});
   const Loaded again(resolved.dump());
   CHECK(again.study.resolved == given.study.resolved);
 }
@@ -42,8 +43,10 @@ TEST_CASE("everything that is wrong with the rules is told at once") {
     CHECK(std::string(error.what()).find("fill") != std::string::npos);
   }
   for (const char* share : {"-0.1", "0.5", "1e300"}) {
-    CHECK_THROWS_WITH_AS(Loaded(std::string("{\"clock_tolerance\": ") + share + "}"),
-                         doctest::Contains("from 0 to below 0.5"), InputError);
+    for (const char* key : {"clock_tolerance", "clock_drift"}) {
+      CHECK_THROWS_WITH_AS(Loaded(std::string("{\"") + key + "\": " + share + "}"),
+                           doctest::Contains("from 0 to below 0.5"), InputError);
+    }
   }
   CHECK_THROWS_WITH_AS(Loaded(R"({"longest_gap": 5})"), doctest::Contains("jumps are refused"),
                        InputError);

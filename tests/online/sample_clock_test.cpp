@@ -56,15 +56,81 @@ TEST_CASE("times in seconds give what numbers give, to the last bit") {
   }
 }
 
-TEST_CASE("a clock that drifts is followed") {
-  OnlineSession session = session_of(lenient);
+TEST_CASE("a clock that drifts is followed as far as the study allows") {
   const std::vector<GivenSample> given = samples(1000);
-  double t = -3;
-  for (const GivenSample& sample : given) {  // 10 sampling times too fast in the end
-    CHECK(session.take(at(t, sample)).how == How::taken);
-    t += 0.99 * h + 1e-9;
+  OnlineSession allowed =
+      session_of(R"({"jumps": "fill", "late": "correct", "lag": 50, "clock_drift": 0.01})");
+  OnlineSession usual = session_of(lenient);
+  Index taken = 0;
+  const auto time_of = [](std::size_t k) { return -3 + 0.992 * h * static_cast<double>(k); };
+  for (std::size_t k = 0; k < 1000; ++k) {
+    CHECK(allowed.take(at(time_of(k), given[k])).how == How::taken);
+    if (taken < static_cast<Index>(k)) continue;
+    try {
+      usual.take(at(time_of(k), given[k]));
+      ++taken;
+    } catch (const Error& error) {
+      CHECK(std::string(error.what()).find("has gone wrong by -0.01") != std::string::npos);
+    }
   }
-  CHECK(session.session().last() == 999);
+  CHECK(allowed.session().last() == 999);
+  CHECK(taken == 2);
+}
+
+TEST_CASE("late outputs and jumps on a drifting clock are of the right times, or refused") {
+  const std::vector<GivenSample> given = samples(400);
+  const auto time_of = [](std::size_t k) { return 1.7e9 + 1.005 * h * static_cast<double>(k); };
+  const char* const drifting = R"({"jumps": "fill", "late": "correct", "lag": 300,
+    "clock_drift": 0.005, "clock_tolerance": 0.02, "repeated": "ignore"})";
+  OnlineSession session = session_of(drifting);
+  for (std::size_t k = 0; k < 200; ++k) {
+    GivenSample sample = at(time_of(k), given[k]);
+    if (k % 7 == 0) sample.y.setConstant(NAN);
+    session.take(sample);
+  }
+  int corrected = 0, refused = 0;
+  for (std::size_t k = 196; k > 0; k -= 7) {
+    try {
+      const Taken late = session.take(at(time_of(k), given[k]));
+      REQUIRE(!late.steps.empty());
+      CHECK(late.steps.front().k == static_cast<Index>(k));
+      ++corrected;
+    } catch (const Error& error) {
+      CHECK(std::string(error.what()).find("tells no number") != std::string::npos);
+      ++refused;
+    }
+  }
+  CHECK(corrected == 14);  // up to 95 samples behind: 95 x 0.005 + 0.02 < 0.5
+  CHECK(refused == 14);
+  for (const std::size_t gap : {50, 90, 120}) {
+    OnlineSession jumping = session_of(drifting);
+    jumping.take(at(time_of(0), given[0]));
+    if (gap < 96) {
+      CHECK(jumping.take(at(time_of(gap), given[gap])).steps.back().k == static_cast<Index>(gap));
+    } else {
+      CHECK_THROWS_WITH_AS(jumping.take(at(time_of(gap), given[gap])),
+                           doctest::Contains("clock_drift"), Error);
+    }
+  }
+}
+
+TEST_CASE("a first time after samples without times tells no number") {
+  OnlineSession session = session_of(lenient);
+  const std::vector<GivenSample> given = samples(8);
+  session.take(given[0]);
+  session.take(given[1]);
+  CHECK_THROWS_WITH_AS(session.take(at(60, given[6])), doctest::Contains("tells no k"), Error);
+  GivenSample both = at(60, given[6]);
+  both.k = 6;
+  CHECK(session.take(both).steps.back().k == 6);
+  CHECK(session.take(at(60.5, given[7])).steps.back().k == 7);
+}
+
+TEST_CASE("what is before the first sample is not called too late") {
+  OnlineSession session = session_of(lenient);
+  const std::vector<GivenSample> given = samples(8);
+  session.take(given[3]);
+  CHECK(session.take(given[2]).said.find("before the first sample") != std::string::npos);
 }
 
 TEST_CASE("clocks that jump are refused, or follow the rule for jumps, and nothing has happened") {
@@ -74,9 +140,9 @@ TEST_CASE("clocks that jump are refused, or follow the rule for jumps, and nothi
   session.take(at(100.5, given[1]));
   CHECK_THROWS_WITH_AS(session.take(at(101.2, given[2])), doctest::Contains("clock_tolerance"),
                        Error);
-  CHECK_THROWS_WITH_AS(session.take(at(3701.0, given[2])), doctest::Contains("longest_gap"), Error);
-  CHECK_THROWS_WITH_AS(session.take(at(-1e6, given[2])), doctest::Contains("before k = 0"), Error);
-  CHECK_THROWS_WITH_AS(session.take(at(1e300, given[2])), doctest::Contains("too long"), Error);
+  CHECK_THROWS_WITH_AS(session.take(at(301.0, given[2])), doctest::Contains("longest_gap"), Error);
+  CHECK_THROWS_WITH_AS(session.take(at(50, given[2])), doctest::Contains("before k = 0"), Error);
+  CHECK_THROWS_WITH_AS(session.take(at(1e300, given[2])), doctest::Contains("is known to"), Error);
   CHECK_THROWS_AS(session.take(at(NAN, given[2])), Error);
   CHECK_THROWS_AS(session.take(at(INFINITY, given[2])), Error);
   CHECK_FALSE(session.has_ended());
@@ -92,6 +158,25 @@ TEST_CASE("clocks that jump are refused, or follow the rule for jumps, and nothi
   CHECK(session.take(both).steps[0].k == 9);  // with the number that it had
   session.start();
   CHECK(session.take(at(7.123, given[0])).steps[0].k == 0);
+}
+
+TEST_CASE("times that doubles cannot tell apart are refused") {
+  const GivenSample given = samples(1)[0];
+  const auto with = [](const char* sampling_time, const char* tolerance) {
+    std::string text = study_text(std::string("{\"clock_drift\": 0, \"clock_tolerance\": ") + tolerance + "}");
+    text.insert(text.find("\"A\""), std::string("\"sampling_time\": ") + sampling_time + ", ");
+    Loaded loaded(text, Loaded::whole);
+    return OnlineSession(loaded.study, loaded.registry, "constrained");
+  };
+  for (const char* sampling_time : {"1e-9", "1e-6"}) {
+    OnlineSession session = with(sampling_time, "0.01");
+    CHECK_THROWS_WITH_AS(session.take(at(1.7e9, given)), doctest::Contains("is known to"), Error);
+    CHECK(session.take(at(1e-3, given)).steps.size() == 1);
+  }
+  OnlineSession strict = with("0.1", "0");  // 3 times 0.1 is not 0.3 in doubles
+  for (const double t : {0., .1, .2, .3, .4, .5, .6, .7, .8, .9, 1.})
+    CHECK(strict.take(at(t, given)).how == How::taken);
+  CHECK_THROWS_AS(strict.take(at(1.1 + 1e-9, given)), Error);
 }
 
 TEST_CASE("a late sample does not set the clock back") {

@@ -76,6 +76,22 @@ TEST_CASE("columns of times have some names, and others are told to be passed ov
   CHECK(rows.passed_over() == std::vector<std::string>{"stamp", "note"});
 }
 
+TEST_CASE("a column is of one signal, by the study's names before the numbers") {
+  std::string text = study_text();
+  text.insert(text.find("\"A\""), "\"names\": {\"outputs\": [\"y_0\", \"y_1\"]}, ");
+  Loaded loaded(text, Loaded::whole);
+  SampleLines named(loaded.study), numbered(loaded.study), twice(loaded.study);
+  named.read("u_1,y_0,y_1");
+  const auto sample = named.read("0,0.9,-0.5").sample;
+  CHECK(sample->y[0] == 0.9);
+  CHECK(sample->y[1] == -0.5);
+  CHECK_THROWS_WITH_AS(numbered.read("u_1,y_1,y_2"), doctest::Contains("of several signals"),
+                       InputError);
+  CHECK_THROWS_WITH_AS(twice.read("u_1,y_0,y_1,y_0"), doctest::Contains("more than once"),
+                       InputError);
+  CHECK(twice.read("\xEF\xBB\xBF{\"u\": [0]}").sample);
+}
+
 TEST_CASE("what is no header row says so") {
   Loaded loaded;
   SampleLines lines(loaded.study);

@@ -16,6 +16,20 @@ void read_rule(const Cursor& at, const char* key, const std::vector<std::string>
   if (given && read_choice(*given, names) == names[1]) rule = static_cast<Rule>(1);
 }
 
+/// What a clock may be wrong by.
+void read_share(const Cursor& at, const char* key, double& share) {
+  const auto given = at.find(key);
+  if (!given) return;
+  const double value = read_number(*given).value_or(share);
+  if (value >= 0 && value < 0.5) {
+    share = value;
+  } else {
+    given->error("must be from 0 to below 0.5, and is " + detail::to_text(value),
+                 "times may miss those of the plant by a share of the sampling time, and run fast "
+                 "or slow by a share");
+  }
+}
+
 }  // namespace
 
 const std::vector<std::string>& jump_rule_names() {
@@ -35,9 +49,11 @@ const std::vector<std::string>& repeat_rule_names() {
 
 OnlineSpec read_online(const Cursor& at) {
   OnlineSpec spec;
-  if (!at.expect_keys({"jumps", "longest_gap", "late", "lag", "repeated", "clock_tolerance"}, "key",
-                      "rules for samples out of order: {\"jumps\": \"fill\", \"late\": "
-                      "\"correct\", \"repeated\": \"ignore\"}"))
+  if (!at.expect_keys(
+          {"jumps", "longest_gap", "late", "lag", "repeated", "clock_tolerance", "clock_drift"},
+          "key",
+          "rules for samples out of order: {\"jumps\": \"fill\", \"late\": "
+          "\"correct\", \"repeated\": \"ignore\"}"))
     return spec;
   read_rule(at, "jumps", jump_rule_names(), spec.jumps);
   read_rule(at, "late", late_rule_names(), spec.late);
@@ -49,15 +65,8 @@ OnlineSpec read_online(const Cursor& at) {
   }
   if (const auto lag = at.find("lag"))
     spec.lag = read_integer(*lag, 1, longest_lag).value_or(spec.lag);
-  if (const auto tolerance = at.find("clock_tolerance")) {
-    const double share = read_number(*tolerance).value_or(spec.clock_tolerance);
-    if (share >= 0 && share < 0.5) {
-      spec.clock_tolerance = share;
-    } else {
-      tolerance->error("must be from 0 to below 0.5, and is " + detail::to_text(share),
-                       "what a time may miss its sample's by, as a share of the sampling time");
-    }
-  }
+  read_share(at, "clock_tolerance", spec.clock_tolerance);
+  read_share(at, "clock_drift", spec.clock_drift);
   return spec;
 }
 

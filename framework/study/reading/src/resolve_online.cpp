@@ -13,6 +13,7 @@ nlohmann::ordered_json resolved_online(const OnlineSpec& spec) {
   online["lag"] = spec.lag;
   online["repeated"] = repeat_rule_names()[static_cast<std::size_t>(spec.repeated)];
   online["clock_tolerance"] = spec.clock_tolerance;
+  online["clock_drift"] = spec.clock_drift;
   return online;
 }
 

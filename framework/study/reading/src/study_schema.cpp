@@ -338,6 +338,9 @@ Json online() {
   properties["clock_tolerance"] = described(
       Json{{"type", "number"}, {"minimum", 0}, {"exclusiveMaximum", 0.5}, {"default", 0.01}},
       "what the time \"t\" of a sample may miss the plant's by, of a sampling time");
+  properties["clock_drift"] = described(
+      Json{{"type", "number"}, {"minimum", 0}, {"exclusiveMaximum", 0.5}, {"default", 0.001}},
+      "share by which the plant's clock may run fast or slow");
   return object(properties, {});
 }
 

@@ -225,17 +225,19 @@ void Alarms::settle(AlarmCause cause, const std::optional<Alarm>& now, Index ons
     Alarm& alarm = standing_.emplace_back(*now);
     alarm.acknowledged = was_told;
     alarm.times = std::max<Index>(onsets, 1);
+    alarm.is_active = true;
     changes.push_back(
         {was_told ? AlarmChange::What::again : AlarmChange::What::raised, last_, alarm});
-    if (!lasts) changes.push_back({AlarmChange::What::passed, last_, alarm});
+    if (!lasts) pass(cause, last_, changes);
     return;
   }
   if (now && (onsets > 0 || (lasts && !at->is_active))) {
     take(*at);
     at->times += std::max<Index>(onsets, 1);
     at->acknowledged = false;
+    at->is_active = true;
     changes.push_back({AlarmChange::What::again, last_, *at});
-    if (!lasts) changes.push_back({AlarmChange::What::passed, last_, *at});
+    if (!lasts) pass(cause, last_, changes);
     return;
   }
   if (at->is_active && !lasts) {

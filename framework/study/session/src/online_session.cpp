@@ -43,7 +43,7 @@ std::string text_of(const OnlineSpec& rules) {
   return std::to_string(static_cast<int>(rules.jumps)) + " " + std::to_string(rules.longest_gap) +
          " " + std::to_string(static_cast<int>(rules.late)) + " " + std::to_string(rules.lag) +
          " " + std::to_string(static_cast<int>(rules.repeated)) + " " +
-         fmt::format("{}", rules.clock_tolerance);
+         fmt::format("{} {}", rules.clock_tolerance, rules.clock_drift);
 }
 
 Vector no_outputs(Index count) {
@@ -77,7 +77,7 @@ class OnlineSession::Intake {
       : rules_(study.online),
         session_(study, registry, pipeline),
         alarms_(study, session_),
-        clock_(study.labels.sampling_time, rules_.clock_tolerance) {
+        clock_(study.labels.sampling_time, {rules_.clock_tolerance, rules_.clock_drift}) {
     if (corrects()) before_ = session_.save();
   }
 
@@ -88,7 +88,7 @@ class OnlineSession::Intake {
                   "anew, or go on from a state that was saved");
     const std::optional<Index> last = session_.last();
     const Index next = last ? *last + 1 : given.k.value_or(0);
-    const Index k = clock_.number_of(given.t, given.k, next);
+    const Index k = clock_.number_of(given.t, given.k, next, !last);
     const Sample sample = detail::sample_of(k, given.u, given.y);
     if (sample.k < 0 || sample.k > latest)
       throw Error(Errc::invalid, time_of(sample.k) + ": times are 0 to 2^53 - 1");
@@ -98,7 +98,7 @@ class OnlineSession::Intake {
     Taken taken = changing([&] {
       return sample.k == next ? on_time(sample, given.t) : after_gap(sample, given.t, next);
     });
-    if (given.t) clock_.took(*given.t, k);
+    if (given.t) clock_.took(*given.t, k, given.k.has_value());
     return taken;
   }
 
@@ -267,6 +267,10 @@ class OnlineSession::Intake {
     const Index first = passed_.empty() ? *session_.last() + 1 : passed_.front().sample.k;
     if (sample.k < first) {
       ++counts_.late;
+      if (passed_.size() <= static_cast<std::size_t>(rules_.lag))
+        return {Taken::How::late,
+                time_of(sample.k) + " is before the first sample: it is left out",
+                {}};
       return {Taken::How::late,
               time_of(sample.k) + " is longer ago than \"lag\": " + std::to_string(rules_.lag) +
                   ": it is left out",

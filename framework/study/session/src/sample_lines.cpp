@@ -72,7 +72,8 @@ class SampleLines::Reader {
   }
 
   GivenLine read(std::string_view line) {
-    const std::string_view text = trimmed(line);
+    std::string_view text = trimmed(line);
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     if (text.empty()) return {};
     Problems problems;
     GivenLine given;
@@ -112,7 +113,7 @@ class SampleLines::Reader {
     return problems;
   }
 
-  /// A column under one of its names: that of the label, of the recorded data, or u_1, y_2.
+  /// A column under one of its names: that of the recorded data, of the label, or u_1, y_2.
   struct Column {
     std::vector<std::string> names;
     std::size_t at = nowhere;
@@ -124,9 +125,11 @@ class SampleLines::Reader {
     std::vector<Column> columns;
     for (Index i = 0; i < count; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      Column column{{symbol + "_" + std::to_string(i + 1), heading_of(labels, symbol, i)}};
-      if (at < labels.size()) column.names.push_back(labels[at]);
+      Column column;
       if (at < recorded.size()) column.names.push_back(recorded[at]);
+      column.names.push_back(heading_of(labels, symbol, i));
+      if (at < labels.size()) column.names.push_back(labels[at]);
+      column.names.push_back(symbol + "_" + std::to_string(i + 1));
       columns.push_back(std::move(column));
     }
     return columns;
@@ -188,7 +191,6 @@ class SampleLines::Reader {
   }
 
   void read_header(std::string_view text, Problems& problems) {
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     const auto names = fields_of(text);
     if (!names) {
       problems.add("", 0, "the header row has quotes that do not end");
@@ -199,10 +201,16 @@ class SampleLines::Reader {
                    "the first row has the names, such as " + names_of_all());
       return;
     }
-    k_ = place({"k"}, *names);
-    t_ = has_clock_ && k_ == nowhere ? place(t_names_, *names) : nowhere;
-    for (Column& column : u_) find(column, *names, problems);
-    for (Column& column : y_) find(column, *names, problems);
+    std::vector<int> uses(names->size());
+    k_ = place({"k"}, *names, uses, problems);
+    t_ = has_clock_ && k_ == nowhere ? place(t_names_, *names, uses, problems) : nowhere;
+    for (Column& column : u_) find(column, *names, uses, problems);
+    for (Column& column : y_) find(column, *names, uses, problems);
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+      if (uses[i] > 1)
+        problems.add("", 0, "the column " + in_quotes((*names)[i]) + " would be of several signals",
+                     "name the columns as the study names inputs and outputs");
+    }
     if (problems.any() && text.find_first_of(";\t") != std::string_view::npos)
       problems.add("", 0, "has \";\" or tabs", "columns are separated by commas");
     if (!problems.any()) header_ = *names;
@@ -216,30 +224,37 @@ class SampleLines::Reader {
   std::string names_of_all() const {
     std::string text;
     for (const auto* columns : {&u_, &y_}) {
-      for (const Column& column : *columns)
-        text += (text.empty() ? "" : ",") + column.names.front();
+      for (const Column& column : *columns) text += (text.empty() ? "" : ",") + column.names.back();
     }
     return text;
   }
 
   static std::size_t place(const std::vector<std::string>& names,
-                           const std::vector<std::string>& header) {
+                           const std::vector<std::string>& header, std::vector<int>& uses,
+                           Problems& problems) {
     for (const std::string& name : names) {
-      const auto found = std::find(header.begin(), header.end(), name);
-      if (found != header.end()) return static_cast<std::size_t>(found - header.begin());
+      const auto found = std::ranges::find(header, name);
+      if (found == header.end()) continue;
+      if (std::ranges::count(header, name) > 1)
+        problems.add("", 0, "the column " + in_quotes(name) + " appears more than once",
+                     "rename one of them");
+      const auto at = static_cast<std::size_t>(found - header.begin());
+      ++uses[at];
+      return at;
     }
     return nowhere;
   }
 
-  static void find(Column& column, const std::vector<std::string>& header, Problems& problems) {
-    column.at = place(column.names, header);
+  static void find(Column& column, const std::vector<std::string>& header, std::vector<int>& uses,
+                   Problems& problems) {
+    column.at = place(column.names, header, uses, problems);
     if (column.at != nowhere) return;
     const std::vector<std::string> some(
         header.begin(), header.begin() + std::min<std::ptrdiff_t>(30, std::ssize(header)));
     problems.add("", 0,
                  "there is no column " + in_quotes(column.names.front()) + or_another(column) +
                      " in the header",
-                 suggest(column.names.back(), some));
+                 suggest(column.names.front(), some));
   }
 
   /// Its other name.

@@ -209,6 +209,7 @@ struct OnlineSpec {
   std::int64_t lag = 10;  ///< samples that late outputs may lie behind the last one
   RepeatRule repeated = RepeatRule::refuse;
   double clock_tolerance = 0.01;  ///< of a sampling time, that times may miss the plant's by
+  double clock_drift = 0.001;     ///< share by which the clock may run fast or slow
 };
 
 /// One axis of a sweep: each of its values takes the place of what stands at `path`, in every place
