@@ -42,7 +42,7 @@ class Tanks:
         return u, y
 
 
-def lines(steps, leak, dropouts, seed):
+def samples(steps, leak, dropouts, seed):
     """(k, samples that are sent then): that of k, perhaps without outputs, and late ones."""
     tanks, chance = Tanks(leak, seed), random.Random(seed + 1)
     late, down_until = [], -1
@@ -77,7 +77,7 @@ def main():
     given = options.parse_args()
     try:
         count = 0
-        for _, sent in lines(given.steps, given.leak, given.dropouts, given.seed):
+        for _, sent in samples(given.steps, given.leak, given.dropouts, given.seed):
             for sample in sent:
                 if given.clock is not None:
                     sample = with_time(sample, given.clock)

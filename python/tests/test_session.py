@@ -1,5 +1,4 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-import json
 import math
 import threading
 
@@ -195,9 +194,8 @@ def test_the_plant_of_the_example():
     import runpy
     plant = runpy.run_path(str(REPOSITORY / "examples" / "online" / "plant.py"))
     session, changes = co.Session(tanks(), "supervision"), []
-    for _, lines in plant["lines"](540, 500, 0.3, 1):
-        for line in lines:
-            sent = json.loads(line)
+    for _, samples in plant["samples"](540, 500, 0.3, 1):
+        for sent in samples:
             missing = [i for i, value in enumerate(sent["y"]) if value is None]
             y = [math.nan if value is None else value for value in sent["y"]]
             for step in session.take(sent["u"], y, k=sent["k"], missing=missing).steps:

@@ -163,7 +163,8 @@ TEST_CASE("clocks that jump are refused, or follow the rule for jumps, and nothi
 TEST_CASE("times that doubles cannot tell apart are refused") {
   const GivenSample given = samples(1)[0];
   const auto with = [](const char* sampling_time, const char* tolerance) {
-    std::string text = study_text(std::string("{\"clock_drift\": 0, \"clock_tolerance\": ") + tolerance + "}");
+    std::string text =
+        study_text(std::string("{\"clock_drift\": 0, \"clock_tolerance\": ") + tolerance + "}");
     text.insert(text.find("\"A\""), std::string("\"sampling_time\": ") + sampling_time + ", ");
     Loaded loaded(text, Loaded::whole);
     return OnlineSession(loaded.study, loaded.registry, "constrained");
