@@ -58,28 +58,32 @@ Index SampleClock::by_time(double t) const {
     return errors_.tolerance + rounded + errors_.drift * std::abs(count);
   };
   const double steps = steps_from(*last_, t), whole = std::round(steps);
-  const std::string apart = fmt::format(
-      "t = {} lies {} sampling times of {} s after t = {} of k = {}: it is refused, as ", t, steps,
-      sampling_time_, last_->t, last_->k);
+  const auto refuse_as = [&](const std::string& why) {
+    refuse(
+        fmt::format("t = {} lies {} sampling times of {} s after t = {} of k = {}: it is refused, "
+                    "as {}",
+                    t, steps, sampling_time_, last_->t, last_->k, why));
+  };
   if (!(allowed(whole) < 0.5)) {
-    refuse(apart +
-           fmt::format("over so many times a clock that may be wrong by \"clock_drift\": {} "
-                       "tells no number",
-                       errors_.drift));
+    refuse_as(
+        fmt::format("over so many times a clock that may be wrong by \"clock_drift\": {} "
+                    "tells no number",
+                    errors_.drift));
   }
   if (!(std::abs(steps - whole) <= allowed(whole))) {
-    refuse(apart + fmt::format("it may miss a whole number of them by \"clock_tolerance\": {} and "
-                               "\"clock_drift\": {} of their number",
-                               errors_.tolerance, errors_.drift));
+    refuse_as(
+        fmt::format("it may miss a whole number of them by \"clock_tolerance\": {} and "
+                    "\"clock_drift\": {} of their number",
+                    errors_.tolerance, errors_.drift));
   }
   const Index k = last_->k + static_cast<Index>(whole);
-  if (k < 0) refuse(apart + "this is before k = 0");
+  if (k < 0) refuse_as("this is before k = 0");
   const double since = static_cast<double>(k - set_->k);
   if (!(std::abs(steps_from(*set_, t) - since) <= allowed(since))) {
-    refuse(apart +
-           fmt::format("the clock has gone wrong by {:.3g} sampling times since k = {}, more "
-                       "than \"clock_tolerance\": {} and \"clock_drift\": {} of their number",
-                       steps_from(*set_, t) - since, set_->k, errors_.tolerance, errors_.drift));
+    refuse_as(
+        fmt::format("the clock has gone wrong by {:.3g} sampling times since k = {}, more "
+                    "than \"clock_tolerance\": {} and \"clock_drift\": {} of their number",
+                    steps_from(*set_, t) - since, set_->k, errors_.tolerance, errors_.drift));
   }
   return k;
 }
