@@ -4,6 +4,7 @@
 #include <random>
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include "online/study.hpp"
 
@@ -204,4 +205,63 @@ TEST_CASE("times need a sampling time, and are part of the state") {
   OnlineSession other = session_of(R"({"jumps": "fill", "late": "correct", "repeated": "ignore",
     "clock_tolerance": 0.2})");
   CHECK_THROWS_AS(other.restore(before.save()), Error);
+}
+
+TEST_CASE("on clocks within their errors no time is taken for another") {
+  std::mt19937 engine(7);
+  const auto draw = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(engine);
+  };
+  const auto number = [](double value) { return nlohmann::json(value).dump(); };
+  int taken = 0, late = 0, refused = 0;
+  for (int seed = 0; seed < 100; ++seed) {
+    const double sampling_time = std::pow(10, std::round(draw(-3, 3))),
+                 tolerance = draw(0.001, 0.3), most_drift = draw(0, 0.02),
+                 drift = draw(-most_drift, most_drift), begin = draw(-1e6, 1e6) * sampling_time;
+    std::string text =
+        study_text(R"({"jumps": "fill", "lag": 200, "longest_gap": 1000,
+      "repeated": "ignore", "clock_tolerance": )" +
+                   number(tolerance) + ", \"clock_drift\": " + number(most_drift) + "}");
+    text.insert(text.find("\"A\""), "\"sampling_time\": " + number(sampling_time) + ", ");
+    Loaded loaded(text, Loaded::whole);
+    OnlineSession session(loaded.study, loaded.registry, "interval");
+    std::vector<double> times;  // of the clock
+    Index last = -1;
+    for (Index k = 0; k < 400;) {
+      const auto time = [&](Index at) {
+        while (std::ssize(times) <= at) {
+          const double jitter = draw(-0.49, 0.49) * tolerance;
+          times.push_back(
+              begin + sampling_time *
+                          (static_cast<double>(std::ssize(times)) * (1 + 0.99 * drift) + jitter));
+        }
+        return times[static_cast<std::size_t>(at)];
+      };
+      const bool comes_late = last > 0 && draw(0, 1) < 0.3;
+      const Index at = comes_late ? static_cast<Index>(draw(0, static_cast<double>(last))) : k;
+      GivenSample sample{{}, Vector::Zero(1), Vector{{comes_late ? 0. : NAN, NAN}}, time(at)};
+      try {
+        const Taken found = session.take(sample);
+        if (comes_late) {
+          REQUIRE(found.said.starts_with("k = " + std::to_string(at) + " "));
+          ++late;
+        } else {
+          REQUIRE(found.steps.back().k == at);
+          last = at;
+          ++taken;
+        }
+      } catch (const Error& error) {
+        REQUIRE(std::string(error.what()).find("clock") != std::string::npos);
+        ++refused;
+        sample.k = at;  // of samples in order it sets the clock
+        session.take(sample);
+        last = std::max(last, at);
+      }
+      if (!comes_late) k += draw(0, 1) < 0.1 ? static_cast<Index>(draw(2, 60)) : 1;
+    }
+  }
+  MESSAGE(taken, " taken, ", late, " late, ", refused, " refused");
+  CHECK(taken > 9000);
+  CHECK(late > 1500);
+  CHECK(refused > 0);
 }

@@ -131,18 +131,20 @@ TEST_CASE("requests stand between samples") {
   CHECK_THROWS_AS(lines.read(R"({"do": "start", "u": [0]})"), InputError);
 }
 
-TEST_CASE("mutated lines are samples or refused, and a session goes on after them") {
-  Loaded loaded(R"({"jumps": "fill", "repeated": "ignore", "late": "correct"})");
+namespace {
+
+/// Lines that have been a sample, of a study that may have a sampling time.
+void expect_no_harm_of_mutations(const std::string& study, const std::string& valid, int count) {
+  Loaded loaded(study, Loaded::whole);
   SampleLines lines(loaded.study);
   OnlineSession session(loaded.study, loaded.registry, "zonotope");
   std::mt19937 engine(1);
-  const std::string valid = R"({"k": 12, "u": [0.5], "y": [1.25, -0.75]})";
   const std::string bytes = "{}[]\",:.-+eE0123456789 nulltrue\\\n\x01\x80\xFF";
   const auto any = [&](std::size_t below) {
     return std::uniform_int_distribution<std::size_t>(0, below - 1)(engine);
   };
   int taken = 0, refused = 0;
-  for (int i = 0; i < 100'000; ++i) {
+  for (int i = 0; i < count; ++i) {
     std::string line = valid;
     for (std::size_t changes = 1 + any(3); changes > 0 && !line.empty(); --changes) {
       const std::size_t at = any(line.size());
@@ -171,4 +173,14 @@ TEST_CASE("mutated lines are samples or refused, and a session goes on after the
   CHECK(refused > 1000);
   session.start();
   CHECK(session.take(*lines.read(valid).sample).how == Taken::How::taken);
+}
+
+}  // namespace
+
+TEST_CASE("mutated lines are samples or refused, and a session goes on after them") {
+  const std::string rules = R"({"jumps": "fill", "repeated": "ignore", "late": "correct"})";
+  expect_no_harm_of_mutations(study_text(rules), R"({"k": 12, "u": [0.5], "y": [1.25, -0.75]})",
+                              100'000);
+  expect_no_harm_of_mutations(study_with_clock(rules),
+                              R"({"t": 6.25, "u": [0.5], "y": [1.25, -0.75]})", 30'000);
 }
