@@ -55,6 +55,8 @@ TEST_CASE("samples have times on a clock where the system has a sampling time") 
   CHECK(rows.read("2.5,0,0,0\n").sample->t == 2.5);
   CHECK_FALSE(rows.read(",0,0,0\n").sample->t);
   CHECK_THROWS_WITH_AS(rows.read("2.5s,0,0,0\n"), doctest::Contains("\"t\""), InputError);
+  CHECK_THROWS_WITH_AS(rows.read("2026-01-01,0,0,0\n"), doctest::Contains("holds seconds"),
+                       InputError);
   numbered.read("t,k,u_1,y_1,y_2\n");  // k is enough, and t may be anything
   CHECK_FALSE(numbered.read("noon,3,0,0,0\n").sample->t);
   Loaded timeless;

@@ -283,7 +283,8 @@ class SampleLines::Reader {
       }
     }
     if (t_ != nowhere && !(*fields)[t_].empty())
-      sample.t = number((*fields)[t_], (*header_)[t_], problems);
+      sample.t = number((*fields)[t_], (*header_)[t_], problems,
+                        "it holds seconds; a column of another name is passed over");
     sample.u = numbers(u_, *fields, false, problems);
     sample.y = numbers(y_, *fields, true, problems);
     return sample;
@@ -300,10 +301,11 @@ class SampleLines::Reader {
     return values;
   }
 
-  static double number(const std::string& field, const std::string& column, Problems& problems) {
+  static double number(const std::string& field, const std::string& column, Problems& problems,
+                       const char* suggestion = "") {
     const detail::ParsedNumber number = detail::parse_number(field);
     if (!number.problem.empty())
-      problems.add("", 0, "column " + in_quotes(column) + ": " + number.problem);
+      problems.add("", 0, "column " + in_quotes(column) + ": " + number.problem, suggestion);
     return number.value;
   }
 
