@@ -115,7 +115,9 @@ void StreamLoop::run() {
 void StreamLoop::judge_replay() {
   std::vector<std::string> differences = replayed_->differences();
   if (refused_ > 0)
-    differences.push_back(count(refused_, "line") + " of the log refused, which were taken then");
+    differences.push_back(count(refused_, "line") +
+                          (refused_ == 1 ? " of the log is" : " of the log are") +
+                          " refused, which no line that was taken is");
   differs_ = !differences.empty();
   complaints_.insert(complaints_.end(), differences.begin(), differences.end());
   if (replayed_->lacks_lines())

@@ -94,6 +94,16 @@ TEST_CASE("a column is of one signal, by the study's names before the numbers") 
   CHECK(twice.read("\xEF\xBB\xBF{\"u\": [0]}").sample);
 }
 
+TEST_CASE("numbers may be names") {
+  std::string text = study_text();
+  text.insert(text.find("\"A\""),
+              "\"names\": {\"inputs\": [\"1\"], \"outputs\": [\"2\", \"3\"]}, ");
+  Loaded loaded(text, Loaded::whole);
+  SampleLines lines(loaded.study);
+  CHECK_FALSE(lines.read("3,2,1").sample);
+  CHECK(lines.read("5,6,7").sample->y[0] == 6);
+}
+
 TEST_CASE("what is no header row says so") {
   Loaded loaded;
   SampleLines lines(loaded.study);

@@ -196,7 +196,8 @@ class SampleLines::Reader {
       problems.add("", 0, "the header row has quotes that do not end");
       return;
     }
-    if (std::ranges::all_of(*names, is_value)) {
+    if (std::ranges::all_of(*names, is_value) &&
+        std::ranges::none_of(*names, [this](auto& name) { return is_known(name); })) {
       problems.add("", 0, "is a row of numbers, and no header row has named its columns",
                    "the first row has the names, such as " + names_of_all());
       return;
@@ -214,6 +215,14 @@ class SampleLines::Reader {
     if (problems.any() && text.find_first_of(";\t") != std::string_view::npos)
       problems.add("", 0, "has \";\" or tabs", "columns are separated by commas");
     if (!problems.any()) header_ = *names;
+  }
+
+  /// As the name of a column; a number may be one.
+  bool is_known(const std::string& name) const {
+    const auto has_name = [&](const Column& column) {
+      return std::ranges::find(column.names, name) != column.names.end();
+    };
+    return std::ranges::any_of(u_, has_name) || std::ranges::any_of(y_, has_name);
   }
 
   static bool is_value(const std::string& field) {

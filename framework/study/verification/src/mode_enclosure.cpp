@@ -2,6 +2,7 @@
 #include "study/verification/mode_enclosure.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cordon/core/interval.hpp"
 #include "cordon/interfaces/nonlinear_model.hpp"
@@ -50,6 +51,7 @@ bool has_range(const Box& actuator, Index j) {
 Interval spread(Interval b, double u, Interval range, double& slope) {
   const Interval by = u * b;
   slope = by.is_point() ? by.lower : 0.5 * by.lower + 0.5 * by.upper;
+  if (!std::isfinite(slope)) slope = 0;  // beyond the numbers: all of it is the rest
   return (by + point(-slope)) * range;
 }
 
@@ -76,9 +78,11 @@ Interval others(const Matrix& slopes, Index i, const Box& x, const Box& noise, I
   return sum;
 }
 
-Vector one_after_other(const Vector& x, const Vector& y) {
-  Vector both(x.size() + y.size());
-  both << x, y;
+/// Both, one after the other.
+Box product_of(const Box& X, const Box& Y) {
+  Box both{Vector(X.dim() + Y.dim()), Vector(X.dim() + Y.dim())};
+  both.lower << X.lower, Y.lower;
+  both.upper << X.upper, Y.upper;
   return both;
 }
 
@@ -89,10 +93,10 @@ bool is_defined(Interval x) { return x.lower > -infinity || x.upper < infinity; 
 ModeEnclosure::ModeEnclosure(const Model& model)
     : model_(model), W_(outward::interval_hull(model.W)), V_(outward::interval_hull(model.V)) {
   const Box& actuator = model.linear.actuator;
+  std::vector<Index> ranged;
   for (Index j = 0; model.is_linear() && j < actuator.dim(); ++j)
-    if (has_range(actuator, j)) ranged_.push_back(j);
-  driving_ = {one_after_other(W_.lower, actuator.lower(ranged_)),
-              one_after_other(W_.upper, actuator.upper(ranged_))};
+    if (has_range(actuator, j)) ranged.push_back(j);
+  driving_ = product_of(W_, {actuator.lower(ranged), actuator.upper(ranged)});
   if (model.is_linear()) return;
   const NonlinearModel& own = *model.nonlinear;
   constexpr auto form = formulas::AffineForm::convex_differences;

@@ -54,9 +54,8 @@ class ModeEnclosure {
   std::vector<Index> rows_of(const Sample& now) const;
 
   const Model& model_;
-  Box W_, V_;                  ///< hulls
-  std::vector<Index> ranged_;  ///< actuators with a range
-  Box driving_;
+  Box W_, V_;    ///< hulls
+  Box driving_;  ///< W_, and the ranges of actuators
   std::optional<Formulas> formulas_;
 };
 
